@@ -68,8 +68,8 @@ mod sim {
     mod current_outputs;
     mod current_zeros;
     mod fmea_page;
-    mod held_leg;
     mod half_swings;
+    mod held_leg;
     mod homing_with_faults;
     mod late_points;
     mod load_left_out;
@@ -141,11 +141,12 @@ mod bench {
     mod bode;
     mod check;
     mod cut_tendons;
+    mod false_alarms;
     mod image_budget;
     mod moves;
     mod proof;
     mod server;
-    mod strikes;
+    pub mod strikes;
 }
 
 mod commands {

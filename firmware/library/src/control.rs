@@ -42,7 +42,7 @@ pub use load_estimate::{LoadEstimate, LoadEstimation};
 pub use magnitude::{Applied, Magnitude, SHOWN_PART};
 pub use measure::{Measured, Measurement, ZERO_READINGS};
 pub use mechanism::Mechanism;
-pub use plan::MotionLimits;
+pub use plan::{MotionLimits, REACHED};
 pub use play::Play;
 pub use pretension::{PretensionDemand, PretensionSearch};
 pub use quintic::{MotionState, Quintic};

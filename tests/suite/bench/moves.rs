@@ -77,7 +77,7 @@ fn a_move_keeps_the_tensions_between_minimum_and_maximum() {
     };
     let [f_min_n, f_max_n] = [rig("table1").1.f_min_n, rig("table1").1.f_max_n];
     let (mut below_n, mut above_n) = (0.0_f64, 0.0_f64);
-    for moved in campaign.run(0..56, || ()) {
+    for moved in made(&campaign, 0..56) {
         assert_eq!(moved.error, None);
         let [least_n, greatest_n] = moved.tensions_n;
         below_n = below_n.max(f_min_n - least_n);
@@ -235,20 +235,8 @@ fn a_leg_with_other_tendons_moves() {
                 rigs: rigs.iter().map(unlike).collect(),
                 payload_kg: None,
             };
-            let moved = campaign.run(0..moves, || ());
-            assert_eq!(moved.len() as u64, moves);
             let name = format!("curve {curve_error}, {} rigs", rigs.len());
-            for (hidden, bars) in [
-                (true, UNLIKE_HIDDEN),
-                (
-                    false,
-                    [UNLIKE_OFF_MM, UNLIKE_SWING_MM, UNLIKE_SETTLED_S, 0.05],
-                ),
-            ] {
-                let found = largest(&name, &moved, hidden);
-                let kept = found.iter().zip(bars).all(|(&found, bar)| found < bar);
-                assert!(kept, "{name}, hidden {hidden}: {found:?} beyond {bars:?}");
-            }
+            require_unlike_bars(&name, &made(&campaign, 0..moves), 0.05);
         }
     }
 }

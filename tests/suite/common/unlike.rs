@@ -74,3 +74,17 @@ pub fn rig_with_5_degrees_of_play() -> (String, RigFile) {
         "[actuator]\nbacklash_rad = 0.087\n",
     )
 }
+
+/// Legs of a ready rig whose tendons stretch by a fifth more or less than their curve says: they have to home, and measure that then.
+pub fn rigs_with_other_tendons_like(ready: &str) -> [(String, RigFile); 2] {
+    [0.2, -0.2].map(|curve_error| {
+        let (_, mut file) = rig(ready, "tendons", "");
+        file.plant.curve_error = curve_error;
+        (format!("tendons {curve_error}"), file)
+    })
+}
+
+/// Whether a leg has to home, for its tendons are not as their curve says.
+pub fn has_other_tendons(rig: &RigFile) -> bool {
+    rig.plant.curve_error != 0.0
+}

@@ -229,10 +229,8 @@ fn a_wide_dead_band_stops_no_move_from_arriving() {
 fn a_motor_that_coasts_after_it_stayed_behind_does_not_run_away() {
     let mut coasted_m = 0.0_f32;
     for duty_max in ["0.2", "0.5", "0.7"] {
-        // To 30° the one in f32 goes, and the one in f64 does not: by what is rounded, it is in reach or out of it.
-        let steps = format!(
-            "{ARM} {{ move = {{ azimuth_deg = 220, tilt_deg = 29.9 }} }}, {{ wait_s = 2 }},"
-        );
+        let steps =
+            format!("{ARM} {{ move = {{ azimuth_deg = 220, tilt_deg = 30 }} }}, {{ wait_s = 2 }},");
         let control = format!(
             "[control.servo]\nduty_max = {duty_max}\nspeed_m_per_s = 0.06\n\
              [control.motion]\nspeed_rad_per_s = 3.0\nacceleration_rad_per_s2 = 20.0\njerk_rad_per_s3 = 500.0\n"

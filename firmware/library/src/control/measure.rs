@@ -39,6 +39,19 @@ impl Measured<f64> {
             temperature_c: 30.0,
         }
     }
+
+    /// The same in f32.
+    pub fn single(&self) -> Measured<f32> {
+        let single = |three: [f64; 3]| three.map(|number| number as f32);
+        Measured {
+            pulled_m: single(self.pulled_m),
+            tensions_n: single(self.tensions_n),
+            steady_tensions_n: single(self.steady_tensions_n),
+            currents_a: single(self.currents_a),
+            supply_v: self.supply_v as f32,
+            temperature_c: self.temperature_c as f32,
+        }
+    }
 }
 
 /// The conversion of one axis.

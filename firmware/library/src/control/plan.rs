@@ -24,6 +24,10 @@ pub const SHORTEST_S: f32 = 0.02;
 /// exact in f32.
 pub const LONGEST_S: f32 = 600.0;
 
+/// A direction may be beyond the greatest tilt by this part of its sine: what is rounded in f32 refuses none that is at it, whichever precision
+/// asks.
+pub const REACHED: f32 = 1.000_001;
+
 /// A path may leave the greatest tilt by this part of its half-tangent, 0.003° of 30°: rounding in f32 shall not refuse one to it.
 const ROUNDED: f32 = 1.0001;
 

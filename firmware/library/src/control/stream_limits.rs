@@ -1,7 +1,7 @@
 //! What a streamed set-point may ask for: a path to it within the limits, and one from it to rest.
 
 use super::bounds::max;
-use super::plan::{LONGEST_S, MotionLimits, SHORTEST_S, cycles, half_tangent};
+use super::plan::{LONGEST_S, MotionLimits, REACHED, SHORTEST_S, cycles, half_tangent};
 use super::quintic::{MotionState, Peaks, Quintic};
 use super::segment::Segment;
 use super::{CYCLE_TICKS, TICK_S};
@@ -31,7 +31,7 @@ pub struct StreamLimits<T> {
 impl<T: Scalar> StreamLimits<T> {
     /// The settings' limits.
     pub fn new(settings: &Settings) -> Self {
-        let sine = T::from(settings.tilt_max_sine);
+        let sine = T::from(settings.tilt_max_sine) * T::from(REACHED);
         let reach = half_tangent(sine) * T::from(BULGE);
         Self {
             peaks: MotionLimits::new(settings).peaks,

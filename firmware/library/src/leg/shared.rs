@@ -4,8 +4,8 @@ use super::station::StationLimits;
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, Friction, JogBounds, LoadEstimation,
-    Measured, Mechanism, MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping,
-    Target, TargetGenerator, Turn, bounds, ticks,
+    Measured, Mechanism, MotionLimits, Play, PretensionSearch, REACHED, Stream, StreamLimits,
+    SwingDamping, Target, TargetGenerator, Turn, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
@@ -113,7 +113,7 @@ impl<T: Scalar> LegLimits<T> {
             relax_ticks: ticks(limits.relax_travel_m / limits.ramp_m_per_s),
             taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
             servo_m_per_s: settings.least(|servo| servo.speed_m_per_s).into(),
-            tilt_max_sine: settings.tilt_max_sine.into(),
+            tilt_max_sine: T::from(settings.tilt_max_sine) * T::from(REACHED),
             give_per_n: T::from(GIVE_PART / settings.greatest(|servo| servo.f_max_band_n)),
         })
     }

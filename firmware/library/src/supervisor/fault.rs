@@ -90,8 +90,8 @@ faults! {
     4 Residual {
         name: "sensors disagree on the pose",
         reaction: Hold,
-        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or a change by residual_change_m that neither motion nor load explains; or a tension is over_tension_part above the maximum before or while that is in doubt; or a leg that was homed just now shows a load straight down",
-        remedy: "disarm the leg, clear the fault and home it while it hangs free; check encoders, load cells and tendon curves",
+        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or a change by residual_change_m that neither motion nor load explains; or a tension is over_tension_part above the maximum before or while that is in doubt; or a leg homed just now shows a load",
+        remedy: "disarm the leg, clear the fault and home; check encoders, load cells and tendon curves",
         clears: Command,
     }
     5 CellStale {

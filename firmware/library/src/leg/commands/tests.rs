@@ -8,14 +8,19 @@ use crate::leg::mode::Mode;
 use crate::set_point::{SetPoint, StreamPart};
 use crate::settings::Settings;
 use crate::supervisor::State;
-use leg_model::Direction;
+use core::f64::consts::TAU;
+use leg_model::{Direction, Scalar};
 
 const MEASURED: Measured<f64> = Measured::resting([0.01; 3], [30.0; 3]);
 
 /// A leg that follows commands at rest.
 fn armed() -> Leg<f64> {
+    armed_by(&MEASURED)
+}
+
+fn armed_by<T: Scalar>(measured: &Measured<T>) -> Leg<T> {
     let mut leg = Leg::new(&Settings::table_1().unwrap()).unwrap();
-    let active = Active::begin(&mut leg.shared, &MEASURED);
+    let active = Active::begin(&mut leg.shared, measured);
     leg.mode = Mode::Active(active);
     leg
 }
@@ -70,6 +75,25 @@ fn a_leg_that_is_led_down_to_be_disarmed_is_not_led_elsewhere() {
     }
     let active = leg.mode.active().unwrap();
     assert_eq!(active.commanded, Some([0.0; 2]));
+}
+
+/// Whichever azimuth it has, and in either precision.
+#[test]
+fn a_leg_sets_out_for_the_greatest_tilt() {
+    let reach = f64::from(Settings::table_1().unwrap().tilt_max_sine);
+    let single = MEASURED.single();
+    for step in 0..3600 {
+        let (sin, cos) = (f64::from(step) * TAU / 3600.0).sin_cos();
+        let [x, y] = [reach * cos, reach * sin].map(|part| part as f32);
+        for (part, expected) in [(1.0, Ok(())), (1.000_01, Err(CommandRefusal::OutOfReach))] {
+            let to = Command::Move {
+                x: part * x,
+                y: part * y,
+            };
+            assert_eq!(armed().execute(to, &MEASURED), expected, "{step}");
+            assert_eq!(armed_by(&single).execute(to, &single), expected, "{step}");
+        }
+    }
 }
 
 /// A move to a point of the workspace sets out for it; another one is refused, and the leg stays where it is.
