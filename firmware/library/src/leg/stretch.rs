@@ -24,8 +24,8 @@ const STEPS_MAX: u16 = 20 * STEADY_STEPS;
 /// A target this near to the pretension that was asked for has it, N.
 const NEAR_N: f32 = 0.5;
 
-/// Least part by which tendons stretch otherwise than by their curves that is taken over: below that a single load cell that is off by
-/// less than shows as a load may be the cause, and the residual is small.
+/// Least part by which tendons stretch otherwise than by their curves that is taken over. Less may come of one load cell that is off by so
+/// little that it shows no load, and leaves little over.
 const LEAST_PART: f32 = 0.03;
 
 /// Bounds of all that is taken over since the settings were sent: what is beyond is no tendon of that curve.
