@@ -30,7 +30,7 @@ impl<T: Scalar> ConstantStiffness<T> {
 
     /// See [`Tendon::scale`](super::Tendon::scale).
     pub(super) fn scale(&mut self, elongation_factor: T) {
-        self.stiffness = self.stiffness / elongation_factor;
+        self.stiffness /= elongation_factor;
     }
 }
 

@@ -90,7 +90,7 @@ faults! {
     4 Residual {
         name: "sensors disagree on the pose",
         reaction: Hold,
-        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or a change by residual_change_m that neither motion nor load explains; or a tension is over_tension_part above the maximum before or while that is in doubt; or a leg homed just now shows a load",
+        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or residual_change_m more without motion or load; a tension is over_tension_part above the maximum while that is in doubt; or a leg shows a load after homing",
         remedy: "disarm the leg, clear the fault and home; check encoders, load cells and tendon curves",
         clears: Command,
     }
