@@ -352,7 +352,8 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn doubts(&self, measured: &Measured<T>) -> FaultSet {
         let mut doubts = FaultSet::NONE;
-        doubts.add(Fault::Residual, !self.agreement.agree());
+        let agree = self.agreement.agree() && !self.shared.load_seen;
+        doubts.add(Fault::Residual, !agree);
         let jumped = self.monitors.stay_jumped(&measured.tensions_n);
         doubts.add(Fault::TensionJump, jumped);
         doubts

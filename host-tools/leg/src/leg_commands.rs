@@ -194,7 +194,7 @@ fn run<T>(
 }
 
 /// What tendons of another make are to be told of, as a line.
-fn stretch(factor: f32) -> String {
+fn stretch_line(factor: f32) -> String {
     if factor == 1.0 {
         return String::new();
     }
@@ -218,7 +218,7 @@ pub(crate) fn home(leg: &LegArgs, options: Options) -> Result<(), Failure> {
         format!(
             "{}zero       {a:.3}  {b:.3}  {c:.3} mm of tendon when the board started\n{}",
             leg_report::text(&telemetry),
-            stretch(telemetry.elongation_factor)
+            stretch_line(telemetry.elongation_factor)
         )
     })
 }

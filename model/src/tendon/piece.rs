@@ -46,7 +46,7 @@ impl<T: Scalar> Piece<T> {
         }
     }
 
-    /// Everything but the tensions is proportional to the elongation. What no elongation reaches stays so.
+    /// Everything but the tensions is proportional to the elongation. An unused piece stays beyond every elongation.
     #[inline(always)]
     pub fn scale(&mut self, elongation_factor: T) {
         for coefficient in &mut self.elongation {

@@ -219,9 +219,9 @@ impl<T: Scalar> Active<T> {
         shared.station.allowed && compensated && self.tensioned && !self.moving() && !shared.refused
     }
 
-    /// Whether it is on its way, or corrects where it keeps station.
+    /// Whether it is on its way, measures its tendons after homing, or corrects where it keeps station.
     pub fn moving(&self) -> bool {
-        self.trajectory.moving() || self.station.corrects()
+        self.trajectory.moving() || !self.stretch.is_over() || self.station.corrects()
     }
 
     /// Leads the leg straight down, to be disarmed there.

@@ -38,7 +38,7 @@ pub fn step<T: Scalar>(
         HomingStep::Found(zero_m) => {
             shared.zero_m = Some(zero_m);
             shared.estimator.straight_down();
-            shared.just_homed = true;
+            (shared.just_homed, shared.load_seen) = (true, false);
             event = Some(Event::Homed);
         }
         HomingStep::Failed(tendon) => {

@@ -52,6 +52,8 @@ pub struct Shared<T> {
     pub elongation_factor: T,
     /// Whether the leg was homed and not armed since.
     pub just_homed: bool,
+    /// Whether it showed a load straight down, and was not homed since.
+    pub load_seen: bool,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -176,6 +178,7 @@ impl<T: Scalar> Shared<T> {
             friction: [friction(0), friction(1), friction(2)],
             elongation_factor: T::one(),
             just_homed: false,
+            load_seen: false,
         }
     }
 

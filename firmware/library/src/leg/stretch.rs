@@ -78,7 +78,11 @@ impl StretchSearch {
         faults: &mut FaultSet,
     ) -> bool {
         let found = self.find(shared, tensioned);
-        faults.add(Fault::Residual, found == StretchFound::Load);
+        if found == StretchFound::Load {
+            // It is not cleared before the next homing.
+            shared.load_seen = true;
+            faults.add(Fault::Residual, true);
+        }
         let StretchFound::Factor(factor) = found else {
             return false;
         };
@@ -92,7 +96,11 @@ impl StretchSearch {
             return StretchFound::Nothing;
         };
         let compensated = shared.compensation == Compensation::Estimated;
-        let way = if tensioned { way(shared) } else { Way::Open };
+        let way = if tensioned {
+            progress(shared)
+        } else {
+            Way::Open
+        };
         *steps += 1;
         *steady = if way == Way::There { *steady + 1 } else { 0 };
         // No tick has time for all of it.
@@ -131,7 +139,7 @@ enum Way {
     Blocked,
 }
 
-fn way<T: Scalar>(shared: &Shared<T>) -> Way {
+fn progress<T: Scalar>(shared: &Shared<T>) -> Way {
     let Some(target) = &shared.target else {
         return Way::Open;
     };

@@ -201,7 +201,7 @@ impl OperatorError {
 
 fn timed_out(asked: &str, timeout: Duration, telemetry: &Telemetry<f32>) -> Failure {
     let Telemetry { pose, target, .. } = telemetry;
-    let strays = telemetry.state.follows() && !same_direction(pose, target);
+    let strays = telemetry.state == State::Active && !same_direction(pose, target);
     let (place, remedy) = if strays {
         (
             format!(", {:.2}° off its target", angle_deg(*pose, *target)),

@@ -11,8 +11,8 @@ use leg_model::{Elasticity, evaluate};
 /// How far the leg may lean, as a direction: its lengths are taken for those straight down.
 const STRAIGHT: f32 = 0.005;
 
-/// How far the three tendons may be off each other, as parts of what is expected, and by how much they are measured by the leg itself as it is
-/// tensioned (`leg/stretch.rs` in the firmware).
+/// How far the three tendons may be off each other, as parts of what is expected, and by how much they are off that the leg itself does not measure
+/// as it is tensioned (from 0.7 to 1.4, `leg/stretch.rs` in the firmware): the ratio is rough, so a little less.
 const ALIKE: f64 = 0.1;
 const MEASURED: f64 = 0.25;
 

@@ -28,7 +28,7 @@ const FORGET_TIME_S: f32 = 1.0;
 const CURVE_PART: f32 = 0.09;
 
 /// The same while a leg that was homed is tensioned: its tendons may be of another make, and are measured then (`leg/stretch.rs`). A single
-/// wrong cell still changes the mean by more.
+/// wrong cell of three whose tensions stay changes the mean by more.
 const UNKNOWN_CURVE_PART: f32 = 0.3;
 
 /// Part of a change that both filters take over in a cycle.

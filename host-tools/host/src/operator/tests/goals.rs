@@ -63,6 +63,25 @@ fn a_hold_ends_a_correction_at_once() {
     assert!(operator.now() - begun < Duration::from_millis(300));
 }
 
+/// Homing waits until the tendons are measured, and until a load that the leg cannot have is found.
+#[test]
+fn homing_measures_the_tendons_and_finds_a_cell_that_is_off() {
+    for (curve_error, gain_error, found) in [(0.05, 0.0, None), (0.0, 0.5, Some(Fault::Residual))] {
+        let mut real = RigFile::load(None).unwrap();
+        real.plant.curve_error = curve_error;
+        real.plant.cell_gain_error[0] = gain_error;
+        let leg = emulated_line(&real, InitialState::Slack);
+        let mut operator = host(&leg, 1);
+        let homed = operator.home();
+        assert_eq!(homed.is_err(), found.is_some(), "{homed:?}");
+        let after = telemetry(&mut operator);
+        assert_eq!(after.state, State::Held);
+        assert_eq!(after.faults.stopping().faults().next(), found);
+        let factor = f64::from(after.elongation_factor);
+        assert!((factor - 1.0 - curve_error).abs() < 0.005, "{factor}");
+    }
+}
+
 /// A move knows its payload where the leg kept station.
 #[test]
 fn a_loaded_move_takes_no_longer_from_station() {

@@ -133,12 +133,13 @@ fn a_leg_that_never_comes_to_rest_is_late() {
 /// What a load cell that is off by half its gain comes to.
 #[test]
 fn a_leg_that_stays_off_its_target_is_late_and_its_cells_are_named() {
-    let (mut telemetry, _) = resting_leg();
+    let (mut telemetry, settings) = resting_leg();
     telemetry.state = State::Active;
     telemetry.pose[0] = telemetry.target[0] + 0.0009;
     let mut operator = scripted(move |request| {
         Some(match request {
             HostRequest::Telemetry => telemetry_reply(&telemetry),
+            HostRequest::GetSettings => HostReply::Settings(settings.clone()),
             _ => HostReply::Done,
         })
     });
