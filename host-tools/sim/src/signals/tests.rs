@@ -80,6 +80,7 @@ fn every_name_is_there_once_and_ends_with_its_unit_where_it_has_one() {
         "direction_commanded",
         "direction_reference",
         "duties",
+        "elongation_factor",
     ];
     for name in names {
         let has_unit = units.iter().any(|unit| name.ends_with(unit));
