@@ -344,6 +344,7 @@ impl<T: Scalar> Leg<T> {
         if lost {
             // Homing turns one motor after the other, with little tension, before the leg follows them together.
             self.shared.zero_m = None;
+            self.shared.load_seen = false;
         }
     }
 

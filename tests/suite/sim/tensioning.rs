@@ -64,7 +64,7 @@ fn elongation_factor(stand: &Stand) -> f64 {
     stand.telemetry.unwrap().elongation_factor.into()
 }
 
-/// A leg that showed a load is not cleared, and once it was paid out it has no zero.
+/// A leg that showed a load is not cleared, and once it was paid out it has no zero: it is cleared then, and homes.
 fn require_homing(stand: &mut Stand) {
     stand.command(&Command::Clear).unwrap();
     pass(stand, 0.2);
@@ -73,6 +73,12 @@ fn require_homing(stand: &mut Stand) {
     pass(stand, 6.0);
     assert_eq!(stand.state(), State::Disarmed);
     assert!(!stand.telemetry.unwrap().homed);
+    stand.command(&Command::Clear).unwrap();
+    pass(stand, 0.1);
+    assert!(!stand.faults().any(), "{:?}", stand.faults());
+    stand.command(&Command::Home).unwrap();
+    pass(stand, 0.1);
+    assert_eq!(stand.state(), State::Homing);
 }
 
 #[test]

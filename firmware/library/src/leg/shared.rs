@@ -52,7 +52,7 @@ pub struct Shared<T> {
     pub elongation_factor: T,
     /// Whether the leg was homed and not armed since.
     pub just_homed: bool,
-    /// Whether it showed a load straight down, and was not homed since.
+    /// Whether it showed a load straight down, and has its zero from then.
     pub load_seen: bool,
 }
 

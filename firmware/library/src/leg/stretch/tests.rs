@@ -4,7 +4,9 @@ use super::{
     FACTORS, LEAST_PART, MEASURED_KG, STEADY_STEPS, STEPS_MAX, StretchFound, StretchSearch,
     TRUSTED_KG,
 };
-use crate::control::{Estimate, LengthError, LoadEstimation, PretensionDemand, TargetDemand, Turn};
+use crate::control::{
+    Estimate, LengthError, LoadEstimation, PretensionDemand, Target, TargetDemand, Turn,
+};
 use crate::leg::shared::{Checked, Shared};
 use crate::settings::Settings;
 use leg_model::{Direction, Elasticity, HalfTangent};
@@ -20,19 +22,7 @@ fn hanging(target_n: f64, longer_part: f64) -> Shared<f64> {
         .pretension
         .demand(PretensionDemand::Pretension(PRETENSION_N));
     shared.targets.start_at(target_n);
-    let demand = TargetDemand {
-        q: HalfTangent::new(0.0, 0.0),
-        load: shared.estimator.load.estimate(),
-        turn: &Turn::none(),
-        payload_kg: 0.0,
-        compensated: true,
-        trimmed: false,
-        pretension_n: target_n,
-    };
-    let target = shared
-        .targets
-        .next(&shared.mechanism, &demand, &[target_n; 3])
-        .unwrap();
+    let target = next_target(&mut shared, target_n, target_n);
     let elongations_m = [0, 1, 2].map(|i| {
         shared.mechanism.tendons[i]
             .elongation(target.tensions_n[i])
@@ -50,6 +40,22 @@ fn hanging(target_n: f64, longer_part: f64) -> Shared<f64> {
     });
     shared.target = Some(target);
     shared
+}
+
+/// The next target straight down for a pretension, N, of a leg whose tendons have a tension, N.
+fn next_target(shared: &mut Shared<f64>, pretension_n: f64, tension_n: f64) -> Target<f64> {
+    let demand = TargetDemand {
+        q: HalfTangent::new(0.0, 0.0),
+        load: shared.estimator.load.estimate(),
+        turn: &Turn::none(),
+        payload_kg: 0.0,
+        compensated: true,
+        trimmed: false,
+        pretension_n,
+    };
+    let targets = &mut shared.targets;
+    let next = targets.next(&shared.mechanism, &demand, &[tension_n; 3]);
+    next.unwrap()
 }
 
 /// The first that a search finds, and after how many steps it was over.
@@ -174,24 +180,9 @@ fn a_leg_that_does_not_come_to_its_pretension_is_not_measured() {
 fn scaled_tendons_are_as_long_as_before_at_the_tensions_that_they_have() {
     const FACTOR: f64 = 1.2;
     let mut shared = hanging(PRETENSION_N, 0.0);
-    let lengths_m = |shared: &mut Shared<f64>, tension_n: f64| {
-        let demand = TargetDemand {
-            q: HalfTangent::new(0.0, 0.0),
-            load: shared.estimator.load.estimate(),
-            turn: &Turn::none(),
-            payload_kg: 0.0,
-            compensated: true,
-            trimmed: false,
-            pretension_n: PRETENSION_N,
-        };
-        let next = shared
-            .targets
-            .next(&shared.mechanism, &demand, &[tension_n; 3]);
-        next.unwrap()
-    };
     shared.scale_tendons(FACTOR);
     assert_eq!(shared.elongation_factor, FACTOR);
-    let target = lengths_m(&mut shared, 50.0);
+    let target = next_target(&mut shared, PRETENSION_N, 50.0);
     assert!((target.pretension_n - 50.0).abs() < 0.1, "{target:?}");
     let unscaled = Settings::table_1().unwrap();
     let unscaled = Shared::<f64>::new(&unscaled, Checked::new(&unscaled).unwrap());
