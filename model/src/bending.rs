@@ -83,13 +83,17 @@ impl<T: Scalar> Bending<T> {
         }
     }
 
-    /// The mean of the stiffnesses about the two axes of the plane, N·m/rad: between the smallest and the largest over all tilts, and
-    /// their mean where the axes are across each other.
+    /// The stiffness of the mean compliance, N·m/rad: of the root mean square of the compliances about the softest and the stiffest tilt. It
+    /// is nearer to the softest, about which the leg swings slowest and farthest. Not positive where the leg does not resist every push.
     #[must_use]
     #[inline(always)]
-    pub fn mean(&self) -> T {
-        let ([xx, _, yy], [gxx, _, gyy]) = (self.stiffness, self.gram);
-        T::HALF * (xx / gxx + yy / gyy)
+    pub fn of_mean_compliance(&self) -> T {
+        let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
+        // Product and sum of the two stiffnesses, each times the determinant of the Gram matrix.
+        let product = xx * yy - xy * xy;
+        let sum = xx * gyy - T::TWO * xy * gxy + yy * gxx;
+        let gram = gxx * gyy - gxy * gxy;
+        product / (T::HALF * sum * sum - product * gram).sqrt()
     }
 
     /// The smallest and the largest stiffness over all tilts, N·m/rad.

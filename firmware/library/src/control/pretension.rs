@@ -45,7 +45,7 @@ pub struct PretensionSearch<T> {
     pretension_n: T,
     last_pretension_n: T,
     last_stiffness: T,
-    mean_stiffness: T,
+    swing_stiffness: T,
     /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
@@ -61,7 +61,7 @@ impl<T: Scalar> PretensionSearch<T> {
             pretension_n,
             last_pretension_n: T::zero(),
             last_stiffness: T::zero(),
-            mean_stiffness: T::zero(),
+            swing_stiffness: T::zero(),
             slope: T::one(),
             unreachable: false,
             has_turn: true,
@@ -97,10 +97,10 @@ impl<T: Scalar> PretensionSearch<T> {
         self.last_stiffness
     }
 
-    /// Mean stiffness against a tilt at that pretension, N·m/rad.
+    /// Stiffness of the leg's swing at that pretension, N·m/rad: that of the mean compliance against a tilt.
     #[inline(always)]
-    pub fn mean_stiffness_nm_per_rad(&self) -> T {
-        self.mean_stiffness
+    pub fn swing_stiffness_nm_per_rad(&self) -> T {
+        self.swing_stiffness
     }
 
     /// Whether the bounds on the tensions stop the search short of the demand.
@@ -160,7 +160,7 @@ impl<T: Scalar> PretensionSearch<T> {
         let stiffnesses_n_per_m = command.tendon_stiffnesses(pretension)?;
         let bending = command.bending_with(pretension, &stiffnesses_n_per_m)?;
         let stiffness = bending.stiffness_about(&axis)?;
-        self.mean_stiffness = bending.mean();
+        self.swing_stiffness = bending.of_mean_compliance();
         if let Some(demand) = demand {
             self.search(pretension, stiffness, demand, [lowest, highest]);
         }

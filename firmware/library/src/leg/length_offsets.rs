@@ -87,7 +87,7 @@ impl<T: Scalar> LengthOffsets<T> {
 /// Time constant 1/ω of the first mode of a leg with an inertia, kg·m²; s.
 #[inline(always)]
 fn first_mode_s<T: Scalar>(shared: &Shared<T>, inertia: T) -> T {
-    let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
+    let stiffness = bounds::max(shared.pretension.swing_stiffness_nm_per_rad(), T::one());
     SwingDamping::time_constant_s(inertia, stiffness)
 }
 
