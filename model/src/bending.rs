@@ -87,7 +87,7 @@ impl<T: Scalar> Bending<T> {
     /// is nearer to the softest, about which the leg swings slowest and farthest. Not positive where the leg does not resist every push.
     #[must_use]
     #[inline(always)]
-    pub fn of_mean_compliance(&self) -> T {
+    pub fn compliant_mean(&self) -> T {
         let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
         // Product and sum of the two stiffnesses, each times the determinant of the Gram matrix.
         let product = xx * yy - xy * xy;

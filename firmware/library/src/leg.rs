@@ -292,7 +292,7 @@ impl<T: Scalar> Leg<T> {
                 } else if !active.stretch.is_over() {
                     &ErrorGrowth::TENSIONING
                 } else if active.station.kept().is_some() {
-                    &ErrorGrowth::KEEPING_STATION
+                    &ErrorGrowth::STANDING
                 } else if active.trajectory.moving() {
                     &ErrorGrowth::MOVING
                 } else {
@@ -300,7 +300,7 @@ impl<T: Scalar> Leg<T> {
                 }
             }
             (Mode::Active(active), None) if active.begins_taut() => return self.agreement.pause(),
-            (Mode::Held(_), Some(_)) if self.agreement.watches() => &ErrorGrowth::RESTING,
+            (Mode::Held(_), Some(_)) if self.agreement.watches() => &ErrorGrowth::STANDING,
             _ => return self.agreement.end(),
         };
         if let Some(error) = error {

@@ -35,7 +35,7 @@ fn assert_bending(
     assert!((softest * values.max() - 1.0).abs() < 1e-9);
     assert!((stiffest * values.min() - 1.0).abs() < 1e-9);
     let mean = (0.5 * values.map(|value| value * value).sum()).sqrt();
-    let found = bending.of_mean_compliance();
+    let found = bending.compliant_mean();
     assert!((found * mean - 1.0).abs() < 1e-9);
     for azimuth_deg in (0..360).step_by(50) {
         let (sin, cos) = f64::from(azimuth_deg).to_radians().sin_cos();

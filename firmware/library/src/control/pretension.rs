@@ -160,7 +160,7 @@ impl<T: Scalar> PretensionSearch<T> {
         let stiffnesses_n_per_m = command.tendon_stiffnesses(pretension)?;
         let bending = command.bending_with(pretension, &stiffnesses_n_per_m)?;
         let stiffness = bending.stiffness_about(&axis)?;
-        self.swing_stiffness = bending.of_mean_compliance();
+        self.swing_stiffness = bending.compliant_mean();
         if let Some(demand) = demand {
             self.search(pretension, stiffness, demand, [lowest, highest]);
         }

@@ -54,8 +54,9 @@ impl ErrorGrowth {
     pub const MOVING: Self = Self::new(1e-4, CURVE_PART);
     /// At rest what a tendon creeps.
     pub const RESTING: Self = Self::new(1e-6, CURVE_PART);
-    /// A leg that keeps station would follow a load cell that drifts as slowly: 0.03 N/s are left.
-    pub const KEEPING_STATION: Self = Self::new(1e-7, CURVE_PART);
+    /// Of a leg that keeps station, which would follow a load cell that drifts as slowly, and of one that is held, which would give way once it
+    /// shows too much tension: 0.03 N/s are left.
+    pub const STANDING: Self = Self::new(1e-7, CURVE_PART);
     /// As at rest, of tendons that may be of another make.
     pub const TENSIONING: Self = Self::new(1e-6, UNKNOWN_CURVE_PART);
 

@@ -174,7 +174,7 @@ fn what_drifts_is_no_creep_to_a_leg_that_keeps_station() {
         leg.agreement.agree()
     };
     assert!(agrees_after(&ErrorGrowth::RESTING));
-    assert!(!agrees_after(&ErrorGrowth::KEEPING_STATION));
+    assert!(!agrees_after(&ErrorGrowth::STANDING));
 }
 
 /// A leg that swings as the last of its tendons comes taut, as after a push that took its tension: a damped tendon pulls otherwise than
