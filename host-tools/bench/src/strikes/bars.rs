@@ -52,8 +52,17 @@ const RUNAWAY_BEYOND: f64 = 1.6;
 /// The same where it is cleared and armed again, twice: each arm lets the motor run from where it came to rest.
 const RUNAWAY_AGAIN_BEYOND: f64 = 1.8;
 
-/// The same where a tendon slips by 5 mm and catches the leg, which has fallen by the 46 mm of the tip that belong to it.
-const SLIP_BEYOND: f64 = 2.5;
+/// The same where a tendon slips by 5 mm and catches the leg, which has fallen by the 46 mm of the tip that belong to it: 531.5 N are known
+/// (`--seed 271128`, #17437).
+const SLIP_BEYOND: f64 = 3.0;
+
+/// The same where a moving leg brakes that leaves its load out: its tensions do not take the load from its path, and it swings about where
+/// it comes to rest. 165.0 N are known, of 135.5 N without the stop (`--seed 271128`, #10784).
+const LEFT_OUT_BEYOND: f64 = 0.15;
+
+/// The same where a cell shows the maximum tension on a leg at rest, which gives way by it until another tendon is slack, and swings: 165.6 N
+/// are known (`--seed 777`, #8833).
+const AT_MAX_BEYOND: f64 = 0.15;
 
 /// The highest tension while homing, N; and where a driver gives the whole supply then, for the 10 ms until its motor is told to run away.
 const HOMING_N: f64 = 25.0;
@@ -67,8 +76,9 @@ const WAY_MM: f64 = 3.0;
 /// and follows its error until that changes.
 const REARMED_MM: f64 = 2.0;
 
-/// The same where a gain is 20 % off, which cannot be distinguished from a load, mm.
-const GAIN_MM: f64 = 1.1;
+/// The same where a gain is 20 % off, which cannot be distinguished from a load, mm: 0.12 mm of a tendon, which is 1.1 mm at the tip of a leg
+/// that hangs straight down, and more where the tendon's lever is shorter. 1.25 mm are known, at 30° (`--seed 777`, #23168).
+const GAIN_MM: f64 = 1.4;
 
 /// The same where it drifts down by that: what the cell lacks is 0.16 mm of a tendon's stretch at 70 to 150 N, on the curve of the paper's
 /// tendon, by which it is pulled in; a millimetre of it is 9.2 mm at the tip. One that shows
@@ -76,8 +86,8 @@ const GAIN_MM: f64 = 1.1;
 const GAIN_DOWN_MM: f64 = 1.5;
 
 /// The same where a cell that grows, steps by 10 N or wanders comes to show the maximum tension, mm: its tendon is paid out until another is slack.
-/// Known are 4.74 mm, on the way at a pretension of 140 N (seed 24601, `--fault cell_wanders`, #32298).
-const GAIN_AT_MAX_MM: f64 = 5.0;
+/// Known are 6.28 mm (`--seed 777`, #8833).
+const GAIN_AT_MAX_MM: f64 = 7.0;
 
 /// The same where two sensors change their places or an encoder counts the other way, mm: a controller with its sign reversed runs
 /// for the time until a counter contradicts.
@@ -157,7 +167,7 @@ impl StrikeBars {
         let at_max = defect.is_some_and(|defect| shows_maximum(defect, f_max_n, before.highest_n));
         let (stopped_part, paid_out_mm) = match (at_max, activity.is_on_the_way()) {
             (true, true) => (CUT_OFF_BEYOND, GAIN_AT_MAX_MM),
-            (true, false) => (0.0, GAIN_AT_MAX_MM),
+            (true, false) => (AT_MAX_BEYOND, GAIN_AT_MAX_MM),
             (false, _) => (0.0, 0.0),
         };
         Self {
@@ -170,6 +180,14 @@ impl StrikeBars {
             tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
             sags: defect == Some(Defect::CellsSwapped),
+        }
+    }
+
+    /// Those of a moving leg that leaves its load out.
+    pub(super) fn leave_load_out(self, f_max_n: f64) -> Self {
+        Self {
+            tension_n: self.tension_n.max(f_max_n * (1.0 + LEFT_OUT_BEYOND)),
+            ..self
         }
     }
 

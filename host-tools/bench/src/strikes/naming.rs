@@ -10,7 +10,7 @@ pub(super) const NAMED_S: f64 = 0.5;
 /// again and again, and shows nothing then; while a leg arms or moves, less is compared.
 pub(super) const WANDERS_BY_N: f64 = 12.0;
 pub(super) const WANDERS_S: f64 = 1.5;
-pub(super) const DRIFTS_S: f64 = 6.0;
+pub(super) const DRIFTS_S: f64 = 7.0;
 
 /// By how much a cell wanders until it is named, as one deviation, N: 20 N by the root of 2 s, for it is off for a part of the time alone.
 pub(super) const WANDERED_N: f64 = 28.3;

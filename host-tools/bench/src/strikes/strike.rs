@@ -9,7 +9,7 @@ use super::struck::{Strike, Struck};
 use super::way::Way;
 use crate::stand::Stand;
 use leg_base::description;
-use leg_firmware::command::Command;
+use leg_firmware::command::{Command, Compensation};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_sim::plant::Defect;
@@ -67,7 +67,11 @@ pub(super) fn strike(
 ) -> (Struck, Vec<Moment>) {
     let mut stand = prepared.stand.clone();
     let shown = strike.defect.map(|defect| shown_as(defect, &case.file));
-    let bars = StrikeBars::new(shown, case.activity, case.file.f_max_n, &prepared.unstruck);
+    let f_max_n = case.file.f_max_n;
+    let mut bars = StrikeBars::new(shown, case.activity, f_max_n, &prepared.unstruck);
+    if case.activity == Activity::Moving && case.compensation == Compensation::Off {
+        bars = bars.leave_load_out(f_max_n);
+    }
     if let Some(defect) = strike.defect {
         stand.plant().set_defect(defect, true);
     }

@@ -23,6 +23,10 @@ fn the_page_says_the_bars() {
         format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
         format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
+        format!(
+            "{:.0} % where a moving leg leaves its load out, or one at rest",
+            100.0 * LEFT_OUT_BEYOND.max(AT_MAX_BEYOND)
+        ),
         format!("{HOMING_N} N while homing"),
         format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
         format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
@@ -87,6 +91,11 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             "so that its motor stops: up to {} more",
             percent(CUT_OFF_BEYOND)
         ),
+        format!(
+            "a leg at rest gives way by such a cell: up to {} more",
+            percent(AT_MAX_BEYOND)
+        ),
+        format!("leaves its load out: up to {} more", percent(LEFT_OUT_BEYOND)),
     ] {
         assert!(page.contains(&words), "{words}");
     }
