@@ -4,6 +4,7 @@
 
 use super::half_swings::Disturbed;
 use super::station_stand::paper;
+use crate::common::require_said;
 use crate::common::unlike::{
     has_other_tendons, rigs_with_a_cell_off, rigs_with_other_tendons_like, unlike_rigs,
 };
@@ -246,6 +247,16 @@ fn add_ring_downs(
 
 #[test]
 fn a_leg_that_is_pushed_or_loaded_rings_down() {
+    let [low_n, high_n] = ROOM_N;
+    require_said(
+        "host-tools/docs/scenarios.md",
+        &[
+            format!("a damping ratio of {RATIO} or more"),
+            format!("falls to a tenth within {TENTH_S} s"),
+            format!("up to {PAYLOAD_MAX_KG} kg, and from {low_n} N above the lowest"),
+            format!("to {high_n} N below the highest"),
+        ],
+    );
     const SEEDS: [u64; 3] = [5, 101, 102];
     const COUNT: u32 = 40;
     let found = ring_downs(&paper(), &SEEDS, COUNT, 1.0);
