@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, pass};
-use leg_bench::stand::Stand;
+use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, State};
 use leg_rig::rig_file::RigFile;
@@ -90,9 +90,7 @@ fn it_goes_where_it_is_led_at_once() {
     stand.command(&Command::Stop).unwrap();
     stand.wait(0.3).unwrap();
     stand.command(&Command::Clear).unwrap();
-    stand
-        .command(&leg_bench::stand::move_to([50.0, 5.0]))
-        .unwrap();
+    stand.command(&move_to([50.0, 5.0])).unwrap();
     stand.wait(2.0).unwrap();
     let [x, y] = stand.telemetry.unwrap().target;
     let tilt_deg = x.hypot(y).asin().to_degrees();
@@ -132,5 +130,27 @@ fn it_gives_way_to_the_maximum_tension_no_farther_than_it_says() {
             assert!(stand.faults().has(Fault::Following));
             assert!(farthest_m < 1e-4, "{farthest_m} m");
         }
+    }
+}
+
+/// What trimmed the pretension stays: it was dropped at once, and the tensions stepped by newtons. Straight down there is no load to be left out.
+#[test]
+fn a_trim_stays_where_the_load_is_left_out() {
+    for compensation in [Compensation::Off, Compensation::Frozen] {
+        let mut rig = rig("table1");
+        rig.plant.curve_error = 0.02;
+        let mut stand = armed(&rig, [0.0, 0.0], 0.0, 3);
+        let [asked_n, before_n] = [rig.pretension_n, stand.truth.tensions_n[0]];
+        assert!((before_n - asked_n).abs() < 1.0, "{before_n} N");
+        stand.command(&Command::Compensation(compensation)).unwrap();
+        let mut changed_n = 0.0_f64;
+        for _ in 0..1000 {
+            pass(&mut stand, 1e-3);
+            let tensions_n = stand.truth.tensions_n;
+            changed_n = tensions_n
+                .into_iter()
+                .fold(changed_n, |most, n| most.max((n - before_n).abs()));
+        }
+        assert!(changed_n < 0.5, "{compensation:?}: {changed_n} N");
     }
 }

@@ -190,12 +190,11 @@ impl<T: Scalar> TargetGenerator<T> {
             let third = (kinematics.moment_map * tensions + moment).dot(&plane.normal());
             self.torsion.step(third);
         }
-        let trimmed = if demand.trimmed {
-            self.trim(pretension_n - measured_pretension_n())
-        } else {
-            T::zero()
-        };
-        let stretched = distribution.tensions(pretension_n + trimmed);
+        // Otherwise it stays: what is dropped at once moves the tendons at once.
+        if demand.trimmed {
+            self.trim(pretension_n - measured_pretension_n());
+        }
+        let stretched = distribution.tensions(pretension_n + self.trim_n);
         let mut unstretched_m = <[T; 3]>::from(kinematics.lengths);
         let mut tensions_n = [T::zero(); 3];
         let mut elongations_m = [T::zero(); 3];
@@ -215,7 +214,9 @@ impl<T: Scalar> TargetGenerator<T> {
             pretension_n,
             tensions_n,
             unstretched_m,
-            limited: limited || !feasible || (demand.trimmed && !(trimmed.abs() < self.trim_max_n)),
+            limited: limited
+                || !feasible
+                || (demand.trimmed && !(self.trim_n.abs() < self.trim_max_n)),
         })
     }
 
@@ -244,16 +245,15 @@ impl<T: Scalar> TargetGenerator<T> {
         (next_n, allowed != wish_n)
     }
 
-    /// What is added to the pretension so that the measured one becomes it: for what the curves leave out.
+    /// Changes what is added to the pretension so that the measured one becomes it: for what the curves leave out.
     #[inline(always)]
-    fn trim(&mut self, error: T) -> T {
+    fn trim(&mut self, error: T) {
         let missing = if error.abs() > T::from(TRIM_LEAST_N) {
             error
         } else {
             T::zero()
         };
         self.trim_n = clamp_symmetric(self.trim_n + self.trim_gain * missing, self.trim_max_n);
-        self.trim_n
     }
 }
 

@@ -10,17 +10,21 @@ fn the_trim_ends_at_its_limit() {
     let settings = Settings::table_1().unwrap();
     let max_n = f64::from(settings.estimation.trim_max_n);
     let per_cycle = f64::from(CYCLE_S / settings.estimation.trim_time_s);
+    let trimmed_n = |targets: &mut TargetGenerator<f64>, error_n| {
+        targets.trim(error_n);
+        targets.trim_n
+    };
     for sign in [1.0, -1.0] {
         let mut targets = TargetGenerator::<f64>::new(&settings);
-        assert!((targets.trim(sign) - sign * per_cycle).abs() < 1e-12);
+        assert!((trimmed_n(&mut targets, sign) - sign * per_cycle).abs() < 1e-12);
         for _ in 0..20_000 {
-            assert!(targets.trim(sign * 10.0).abs() <= max_n);
+            assert!(trimmed_n(&mut targets, sign * 10.0).abs() <= max_n);
         }
-        assert_eq!(targets.trim(sign * 10.0), sign * max_n);
-        let back_n = targets.trim(-sign);
+        assert_eq!(trimmed_n(&mut targets, sign * 10.0), sign * max_n);
+        let back_n = trimmed_n(&mut targets, -sign);
         assert!((max_n - back_n.abs() - per_cycle).abs() < 1e-12, "{back_n}");
         targets.start(true);
-        assert!((targets.trim(sign) - sign * per_cycle).abs() < 1e-12);
+        assert!((trimmed_n(&mut targets, sign) - sign * per_cycle).abs() < 1e-12);
     }
 }
 

@@ -95,7 +95,10 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             "a leg at rest gives way by such a cell: up to {} more",
             percent(AT_MAX_BEYOND)
         ),
-        format!("leaves its load out: up to {} more", percent(LEFT_OUT_BEYOND)),
+        format!(
+            "leaves its load out: up to {} more",
+            percent(LEFT_OUT_BEYOND)
+        ),
     ] {
         assert!(page.contains(&words), "{words}");
     }
