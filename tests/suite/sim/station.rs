@@ -7,6 +7,7 @@ use crate::common::require_said;
 use leg_bench::stand::Stand;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, FaultSet, State};
+use leg_sim::plant::Start;
 
 /// The fastest that it corrects, mm/s at the tip.
 const FASTEST_MM_PER_S: f64 = 2.1;
@@ -153,6 +154,34 @@ fn a_leg_that_may_not_keep_station_is_held() {
     moving.command(&Command::Move { x: 0.0, y: 0.1 }).unwrap();
     pass(&mut moving, 0.1);
     keep(&mut moving);
+    // Armed just now, its sensors are not watched yet.
+    let start = Start::Held {
+        azimuth_deg: 0.0,
+        tilt_deg: 10.0,
+        pretension_n: paper().pretension_n,
+        payload_kg: 0.5,
+    };
+    let mut young = Stand::new(&paper(), &paper().plant, start, 54).unwrap();
+    young.wait(0.1).unwrap();
+    young.command(&Command::Arm).unwrap();
+    young
+        .tick_until(0.1, "active", |stand| stand.state() == State::Active)
+        .unwrap();
+    keep(&mut young);
+}
+
+/// Three kilograms are hung on a leg that leans far: no tensions hold them there.
+#[test]
+fn a_station_with_a_load_that_no_tensions_hold_is_held() {
+    let mut bench = keeping(&paper(), [40.0, 28.0], 0.5, 53);
+    bench.plant().set_payload(3.0, 1.0);
+    pass(&mut bench, 4.0);
+    assert_eq!(bench.state(), State::Held);
+    assert!(
+        faults(&bench).has(Fault::Infeasible),
+        "{:?}",
+        faults(&bench)
+    );
 }
 
 /// A hand pushes for a minute: the leg comes back under it, and comes back when it is gone.

@@ -278,6 +278,7 @@ mod tests {
 
     #[test]
     fn farther_than_it_may_it_is_too_far_and_a_pretension_is_not() {
+        assert!((FARTHEST_RAD.to_degrees() - 3.0).abs() < 0.01);
         let farthest_m = f64::from(FARTHEST_RAD) * TIP_M;
         for (lengths_m, too_far) in [
             (tilting(0.99 * farthest_m), false),

@@ -84,6 +84,15 @@ fn a_reaction_only_ever_takes_authority_away() {
 }
 
 #[test]
+fn whatever_stops_a_leg_switches_a_motor_that_turns_alone_off() {
+    for reaction in REACTIONS {
+        let stops = reaction > Reaction::Limit;
+        let next = State::Jogging.next(Event::Reaction(reaction));
+        assert_eq!(next, stops.then_some(State::Off), "{reaction:?}");
+    }
+}
+
+#[test]
 fn nothing_but_a_clear_leads_back() {
     let events = [
         Event::Ready,
@@ -131,7 +140,11 @@ fn no_start_leads_anywhere_while_a_fault_is_latched() {
         let mut leg = Supervised::active();
         leg.watch(FaultSet::single(fault));
         let limits = fault.reaction() == Reaction::Limit;
-        for (event, started) in [(Event::Arm, State::Active), (Event::Home, State::Homing)] {
+        for (event, started) in [
+            (Event::Arm, State::Active),
+            (Event::Home, State::Homing),
+            (Event::Jog, State::Jogging),
+        ] {
             let next = leg.supervisor.next(State::Disarmed, event);
             assert_eq!(next, limits.then_some(started), "{fault:?} {event:?}");
         }

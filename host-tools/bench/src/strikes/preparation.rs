@@ -64,7 +64,13 @@ fn bring_there(case: &mut Case) -> Result<PreparedLeg, String> {
         if case.activity == Activity::Disarmed {
             disarm(&mut stand)?;
         } else if case.keeps_station {
+            let following = stand.clone();
             keep_station(&mut stand)?;
+            // Where it has no target it is held instead: it is struck as it follows commands.
+            case.keeps_station = stand.state() == State::KeepingStation;
+            if !case.keeps_station {
+                stand = following;
+            }
         }
         return Ok(resting(stand));
     };
@@ -160,11 +166,11 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
     stand.rest()
 }
 
-/// Leaves the leg to itself: nothing is heard of its host from then on.
+/// Leaves the leg to itself, if it may keep station: nothing is heard of its host from then on.
 fn keep_station(stand: &mut Stand) -> Result<(), String> {
     stand.command(&Command::KeepStation)?;
     stand.tick_until(1.0, "keeping station", |stand| {
-        stand.state() == State::KeepingStation
+        matches!(stand.state(), State::KeepingStation | State::Held)
     })?;
     stand.silence();
     stand.rest()

@@ -155,7 +155,7 @@ impl<'a> Watch<'a> {
             before: stand.faults(),
             stopped_s: None,
             given: 0,
-            homed: false,
+            homed: stand.state() == State::Active,
             may_sag,
             sags: false,
             every_s,

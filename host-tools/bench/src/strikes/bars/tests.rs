@@ -103,3 +103,14 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
         assert!(page.contains(&words), "{words}");
     }
 }
+
+#[test]
+fn the_readme_says_how_far_a_load_cell_moves_a_leg_at_rest() {
+    let page = include_str!("../../../../../README.md");
+    let page: Vec<_> = page.split_whitespace().collect();
+    let words = format!(
+        "up to {REST_MM} mm, {} mm where its gain is off or it drifts, {GAIN_AT_MAX_MM} mm where it drifts to the maximum",
+        GAIN_MM.max(GAIN_DOWN_MM)
+    );
+    assert!(page.join(" ").contains(&words), "{words}");
+}

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex};
 use std::thread::sleep;
+use std::time::Duration;
 use tungstenite::Message;
 
 /// A link without a socket.
@@ -66,6 +67,8 @@ fn only_the_page_that_drives_is_passed_on() {
 
 #[test]
 fn what_has_waited_for_long_is_not_sent() {
+    // As SAFETY.md says.
+    assert_eq!(FRESH_TIME, Duration::from_millis(100));
     let link = link();
     let (page, _heard) = add(&link);
     word(&link, page, "drive");
