@@ -79,7 +79,7 @@ impl StretchSearch {
     ) -> bool {
         let found = self.find(shared, tensioned);
         if found == StretchFound::Load {
-            // It is not cleared before the next homing.
+            // It is not cleared before it has lost its zero, or was homed.
             shared.load_seen = true;
             faults.add(Fault::Residual, true);
         }
