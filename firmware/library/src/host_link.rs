@@ -15,6 +15,7 @@ use crate::leg::CommandOutcome;
 use crate::recorder::{RecorderReply, RecorderRequest};
 use crate::sensors::SensorReading;
 use crate::settings::Settings;
+use crate::supervisor::State;
 use crate::telemetry::Telemetry;
 use outbox::Outbox;
 
@@ -29,6 +30,8 @@ pub trait CommandedLeg {
     fn note_decode_error(&mut self);
     /// What became of a command.
     fn outcome(&mut self) -> Option<CommandOutcome>;
+    /// What the leg may do.
+    fn state(&mut self) -> State;
     /// The leg after the last tick.
     fn telemetry(&mut self) -> Telemetry<f32>;
     /// What the last jog measured.
@@ -227,7 +230,7 @@ impl Service {
             }
             HostRequest::GetSettings => self.settings_reply(),
             HostRequest::SaveSettings => {
-                if leg.telemetry().state.driven() {
+                if leg.state().driven() {
                     return Err(HostRefusal::Driven);
                 }
                 if self.saving.is_some() {
@@ -299,7 +302,7 @@ impl Service {
             command,
             Command::Arm | Command::Home | Command::Jog(_) | Command::Clear
         );
-        let follows = leg.telemetry().state.follows();
+        let follows = leg.state().follows();
         if follows && !ends && self.driver.is_some_and(|driver| driver != host) {
             return Err(HostRefusal::OtherHost);
         }

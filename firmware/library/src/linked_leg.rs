@@ -8,6 +8,7 @@ use crate::leg::{Checked, CommandOutcome, Leg};
 use crate::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use crate::sensors::{SensorReading, Sensors};
 use crate::settings::{Settings, SettingsError};
+use crate::supervisor::{FaultSet, State};
 use crate::telemetry::Telemetry;
 use heapless::Vec;
 use leg_model::Scalar;
@@ -120,10 +121,39 @@ impl<T: Scalar> SensingLeg<T> {
         Ok(())
     }
 
+    /// See [`Leg::state`].
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.leg.state()
+    }
+
+    /// See [`Leg::stopping_faults`].
+    #[must_use]
+    pub fn stopping_faults(&self) -> FaultSet {
+        self.leg.stopping_faults()
+    }
+
+    /// See [`Leg::ticks`].
+    #[must_use]
+    pub fn ticks(&self) -> u32 {
+        self.leg.ticks()
+    }
+
     /// See [`Leg::telemetry`].
     #[must_use]
     pub fn telemetry(&self) -> Telemetry<T> {
         self.leg.telemetry()
+    }
+
+    /// See [`Leg::course`].
+    #[must_use]
+    pub fn course(&self) -> Telemetry<T> {
+        self.leg.course()
+    }
+
+    /// See [`Leg::report_measured`].
+    pub fn report_measured(&self, telemetry: &mut Telemetry<T>) {
+        self.leg.report_measured(telemetry);
     }
 }
 
@@ -156,6 +186,10 @@ macro_rules! commanded {
 
             fn outcome(&mut self) -> Option<CommandOutcome> {
                 self.leg.outcome()
+            }
+
+            fn state(&mut self) -> State {
+                self.leg.state()
             }
 
             fn telemetry(&mut self) -> Telemetry<f32> {

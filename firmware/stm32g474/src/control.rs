@@ -8,6 +8,7 @@ use crate::check_ins::CHECK_INS;
 use crate::nucleo::Nucleo;
 use crate::tick_watchdog;
 use core::cell::RefCell;
+use core::hint::black_box;
 use cortex_m::interrupt::Mutex;
 use cortex_m::peripheral::DWT;
 use embassy_stm32::interrupt;
@@ -22,6 +23,7 @@ use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use leg_firmware::sensors::SensorReading;
 use leg_firmware::settings::{Settings, SettingsError};
+use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 
 static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None));
@@ -124,11 +126,26 @@ impl CommandedLeg for SharedLeg {
         with_control(|control| control.leg.outcome())?
     }
 
+    fn state(&mut self) -> State {
+        with_control(|control| control.leg.state()).unwrap_or(State::Boot)
+    }
+
     fn telemetry(&mut self) -> Telemetry<f32> {
-        if let Some(telemetry) = telemetry() {
-            self.telemetry = telemetry;
+        let telemetry = &mut self.telemetry;
+        loop {
+            // Apart: the interrupt waits for one of the two. If it comes between them they are of two ticks, and are
+            // read again: the next one is far.
+            if let Some(course) = with_control(|control| control.leg.course()) {
+                *telemetry = course;
+            }
+            let tick = with_control(|control| {
+                control.leg.report_measured(telemetry);
+                control.leg.ticks()
+            });
+            if tick.is_none_or(|tick| tick == telemetry.tick) {
+                return *telemetry;
+            }
         }
-        self.telemetry
     }
 
     fn jog_report(&mut self) -> Option<JogReport<f32>> {
@@ -155,7 +172,8 @@ impl CommandedLeg for SharedLeg {
         });
         changed.unwrap_or(Err(HostRefusal::Busy))?;
         // Apart: the interrupt may come between the two.
-        let setup = RecorderSetup::new(settings);
+        // The compiler leaves its divisions before the section.
+        let setup = black_box(RecorderSetup::new(settings));
         with_control(|control| control.recorder.begin(&setup));
         Ok(())
     }
@@ -185,7 +203,7 @@ fn rebuild(leg: &mut SensingLeg<f32>, settings: &Settings) -> Result<(), Setting
     Ok(())
 }
 
-/// The leg after the last tick; `None` before the first start.
-pub fn telemetry() -> Option<Telemetry<f32>> {
-    with_control(|control| control.leg.telemetry())
+/// What the leg may do, and its faults that do more than limit; `None` before the first start.
+pub fn condition() -> Option<(State, FaultSet)> {
+    with_control(|control| (control.leg.state(), control.leg.stopping_faults()))
 }

@@ -57,8 +57,8 @@ fn report_errors() {
 
 /// A step of the LED, and now and then a line in the log.
 fn show(step: u32, led: &mut Output<'static>) {
-    let (state, faulted) = match control::telemetry() {
-        Some(telemetry) => (telemetry.state, telemetry.faults.stopping().any()),
+    let (state, faulted) = match control::condition() {
+        Some((state, faults)) => (state, faults.any()),
         None => (State::Boot, false),
     };
     led.set_level(led_on(state, faulted, step).into());

@@ -13,6 +13,7 @@ use leg_firmware::command::Command;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::recorder::RecorderRequest;
+use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
 use leg_host::transport::can::CanTransport;
@@ -54,13 +55,23 @@ fn every_command() -> impl Iterator<Item = Command> {
     })
 }
 
-/// Asks for something, and measures until the reply.
+/// Asks a leg at rest for something, and measures until the reply.
 fn ask(chip: &mut Chip, meter: &mut LatencyMeter, request: &HostRequest) -> HostReply {
+    ask_meanwhile(chip, meter, request, vary_cells)
+}
+
+/// Asks for something, and measures until the reply; the cells read meanwhile what they are let.
+fn ask_meanwhile(
+    chip: &mut Chip,
+    meter: &mut LatencyMeter,
+    request: &HostRequest,
+    cells: impl Fn(&Chip),
+) -> HostReply {
     send(chip, request).unwrap();
     let mut decoder = Decoder::new();
     let end = chip.cycle() + REPLY_MS * MS;
     while chip.cycle() < end {
-        vary_cells(chip);
+        cells(chip);
         meter.run(chip, chip.cycle() + MS / 2);
         while let Some(sent) = chip.peripherals().devices.lpuart.host_receive() {
             // What the leg sends by itself has the number 0.
@@ -109,6 +120,21 @@ fn serial_latency(image: &Path) -> (u64, u32) {
             HostReply::Refused(HostRefusal::Recording),
             "{request:?}"
         );
+    }
+    meter.worst
+}
+
+/// The latest on the serial line of a leg that is driven, while a host reads its telemetry and commands it.
+pub fn driven_latency(chip: &mut Chip) -> (u64, u32) {
+    identity(chip).unwrap();
+    let mut meter = LatencyMeter::new().unwrap();
+    let keep_alive = commanded(Command::KeepAlive);
+    for request in [HostRequest::Telemetry, keep_alive, HostRequest::Telemetry] {
+        let reply = ask_meanwhile(chip, &mut meter, &request, |_| ());
+        if let HostReply::Telemetry(report) = &reply {
+            // The sensors' codes stay what they were: the leg has not noticed yet.
+            assert_eq!(report.telemetry.state, State::Active);
+        }
     }
     meter.worst
 }

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::bits_under_qemu::NOT_COMPARED;
+use super::chip_latency::driven_latency;
 use crate::common::homed_chip::{HomedChip, Homings};
+use leg_boards::chip::LATENCY_CYCLES_MAX;
 use leg_boards::image::FirmwareImage;
 use leg_boards::setup;
 use leg_rig::rig_file::RigFile;
@@ -211,7 +213,8 @@ fn ready(long: bool) -> Vec<(&'static str, Scenario)> {
     found
 }
 
-fn require_passed(mut left: Vec<(&str, Scenario)>) {
+/// The homings of the chips that passed.
+fn require_passed(mut left: Vec<(&str, Scenario)>) -> Homings {
     let image = image();
     // The longest first.
     left.sort_by_key(|(_, scenario)| scenario.steps.len());
@@ -229,6 +232,7 @@ fn require_passed(mut left: Vec<(&str, Scenario)>) {
         }
     });
     assert_eq!(failed.into_inner().unwrap(), [""; 0]);
+    homings
 }
 
 /// All of them but the long ones, homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` runs all, and prints each as it
@@ -239,7 +243,10 @@ fn the_ready_scenarios_pass_on_the_chip_as_in_process() {
     let following = Scenario::parse("following", FOLLOWING).unwrap();
     let mut scenarios = ready(false);
     scenarios.push(("following", following));
-    require_passed(scenarios);
+    let mut active = require_passed(scenarios).active().unwrap();
+    let (cycles, place) = driven_latency(active.chip().unwrap());
+    eprintln!("latest control interrupt of a leg that is driven: {cycles} cycles, at {place:#x}");
+    assert!(cycles <= LATENCY_CYCLES_MAX, "{cycles} at {place:#x}");
 }
 
 /// The long ones, each of which runs under QEMU, too.

@@ -35,6 +35,19 @@ struct Homing {
 #[derive(Default)]
 pub struct Homings(Mutex<Vec<Arc<Homing>>>);
 
+impl Homings {
+    /// A chip whose leg is active after its homing.
+    pub fn active(&self) -> Option<ChipSession> {
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let active = |homing: &&Arc<Homing>| {
+            let ended = homing.exchanges.last();
+            ended.is_some_and(|ended| state(&unpacked(&ended.reply)) == Some(State::Active))
+        };
+        let homed = known.iter().find(active)?.homed.lock();
+        homed.unwrap_or_else(PoisonError::into_inner).copy().ok()
+    }
+}
+
 /// Where a scenario's chip is.
 enum Progress {
     /// It is asked what others were asked: by now so many exchanges.
@@ -170,7 +183,14 @@ impl Link for HomedChip<'_> {
 }
 
 fn homes(reply: &Reply) -> bool {
-    matches!(reply, Reply::Ticked(tick) if tick.telemetry.state == State::Homing)
+    state(reply) == Some(State::Homing)
+}
+
+fn state(reply: &Reply) -> Option<State> {
+    match reply {
+        Reply::Ticked(tick) => Some(tick.telemetry.state),
+        _ => None,
+    }
 }
 
 fn packed(value: &impl serde::Serialize) -> Vec<u8> {

@@ -34,8 +34,8 @@ const HELD_CYCLES: u64 = TICK_BUDGET_CYCLES as u64 + 1;
 /// By then the control interrupt has read when it started.
 const HANDLER_CYCLES: u64 = 100;
 
-/// The latest that the control interrupt's handler may begin, cycles after its interrupt: 2.5 µs. The test `chip_latency`
-/// measures the longest critical section below it.
+/// The latest that the control interrupt's handler may begin, cycles after its interrupt: 2.5 µs. The tests `chip_latency` and
+/// `chip_scenarios` measure the longest critical section below it: of a leg at rest, and of one that is driven.
 pub const LATENCY_CYCLES_MAX: u64 = 423;
 
 /// Updates of the pulse timer up to the end of the first tick.

@@ -12,6 +12,7 @@ use leg_firmware::linked_leg::{RecordedLeg, SensingLeg};
 use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use leg_firmware::sensors::{SensorReading, Sensors};
 use leg_firmware::settings::{Settings, SettingsError};
+use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::virtual_board::VirtualBoard;
 use std::collections::VecDeque;
@@ -121,6 +122,10 @@ impl CommandedLeg for CountingLeg {
 
     fn outcome(&mut self) -> Option<CommandOutcome> {
         self.recorded().outcome()
+    }
+
+    fn state(&mut self) -> State {
+        self.recorded().state()
     }
 
     fn telemetry(&mut self) -> Telemetry<f32> {

@@ -79,6 +79,10 @@ impl CommandedLeg for NotedLeg {
         self.outcomes.pop_front()
     }
 
+    fn state(&mut self) -> State {
+        self.state
+    }
+
     fn telemetry(&mut self) -> Telemetry<f32> {
         Telemetry {
             tick: self.tick,
