@@ -30,6 +30,8 @@ const WATCHED_TICKS: usize = 8;
 
 /// From when the tip counts as at rest, mm.
 const SETTLED_MM: f64 = 0.02;
+/// By then the trajectory moves.
+const BEGUN_S: f64 = 0.05;
 
 /// Longest move, s.
 const MOVE_S: f64 = 10.0;
@@ -63,6 +65,9 @@ pub struct Moved {
     pub took_s: f64,
     /// Farthest that the true tip was off the trajectory on the way, mm.
     pub off_mm: f64,
+    /// The same, but for how it rests off the commanded point, mm.
+    #[serde(skip)]
+    pub off_about_rest_mm: f64,
     /// Farthest that it was from where it comes to rest after the end, mm.
     pub swing_mm: f64,
     /// How long after the end it came within 0.02 mm of that for good, s.
@@ -119,6 +124,7 @@ fn make(drawn: &DrawnMove) -> Moved {
         drawn: drawn.clone(),
         took_s: 0.0,
         off_mm: 0.0,
+        off_about_rest_mm: 0.0,
         swing_mm: 0.0,
         settled_s: 0.0,
         rest_mm: 0.0,
@@ -176,21 +182,28 @@ fn go(drawn: &DrawnMove, stand: &mut Stand, moved: &mut Moved) -> Result<(), Str
     let began_s = stand.time_s();
     stand.command(&stand::move_to(drawn.end_deg))?;
     let mut reference = Reference::new(drawn.tip_length_m());
+    let (mut errors_m, mut began) = (Vec::new(), false);
     loop {
         stand.tick()?;
         stand.require_no_fault()?;
         moved.took_s = stand.time_s() - began_s;
         moved.note_tensions(stand);
-        if let Some(off_m) = reference.tip_error_m(stand) {
-            moved.off_mm = moved.off_mm.max(off_m * 1000.0);
-            moved.way.push((moved.took_s, off_m * 1000.0));
+        if let Some(error_m) = reference.tip_error_m(stand) {
+            let off_mm = error_m.norm() * 1000.0;
+            moved.off_mm = moved.off_mm.max(off_mm);
+            moved.way.push((moved.took_s, off_mm));
+            errors_m.push(error_m);
         }
-        if moved.took_s > 0.05 && !stand.moving() {
+        began |= stand.moving();
+        if moved.took_s > BEGUN_S && !stand.moving() {
             break;
         }
         if moved.took_s > MOVE_S {
             return Err("the move does not end".into());
         }
+    }
+    if !began {
+        return Err("the move does not begin".into());
     }
     let mut tips_m = Vec::new();
     let ended_s = stand.time_s();
@@ -204,12 +217,16 @@ fn go(drawn: &DrawnMove, stand: &mut Stand, moved: &mut Moved) -> Result<(), Str
             moved.way.push((stand.time_s() - began_s, off_m * 1000.0));
         }
     }
-    rest(drawn, &tips_m, moved);
+    let rest_m = rest(drawn, &tips_m, moved);
+    for error_m in errors_m {
+        let off_mm = (error_m - rest_m).norm() * 1000.0;
+        moved.off_about_rest_mm = moved.off_about_rest_mm.max(off_mm);
+    }
     Ok(())
 }
 
-/// How the tip comes to rest.
-fn rest(drawn: &DrawnMove, tips_m: &[Vector3<f64>], moved: &mut Moved) {
+/// How the tip comes to rest, and how far off the commanded point, m.
+fn rest(drawn: &DrawnMove, tips_m: &[Vector3<f64>], moved: &mut Moved) -> Vector3<f64> {
     let resting = (RESTING_S / WATCHED_S * tips_m.len() as f64) as usize;
     let last = &tips_m[tips_m.len() - resting..];
     let rest_m = last.iter().sum::<Vector3<f64>>() / resting as f64;
@@ -220,5 +237,7 @@ fn rest(drawn: &DrawnMove, tips_m: &[Vector3<f64>], moved: &mut Moved) {
             moved.settled_s = (i + 1) as f64 / tips_m.len() as f64 * WATCHED_S;
         }
     }
-    moved.rest_mm = (rest_m - drawn.end_tip_m()).norm() * 1000.0;
+    let off_m = rest_m - drawn.end_tip_m();
+    moved.rest_mm = off_m.norm() * 1000.0;
+    off_m
 }

@@ -61,6 +61,13 @@ fn a_frozen_load_is_let_go_where_the_leg_rests() {
     require_no_alarm(70707, 69, "leaf_spring_universal", 100.0);
 }
 
+/// A use that once ended in **sensors disagree**: a leg stayed where it was, as no tensions held the load that had been frozen. Its load left out, there was
+/// a target again that was made for nine tenths of that load: led there, the motors turned by 0.1 mm at once.
+#[test]
+fn a_leg_without_a_target_goes_on_from_where_it_stays() {
+    require_no_alarm(20_261_127, 49, "table1", 64.0);
+}
+
 /// A part of a use of each rig.
 #[test]
 fn a_leg_that_is_used_raises_no_alarm() {

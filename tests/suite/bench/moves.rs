@@ -56,7 +56,7 @@ fn the_tip_stays_on_its_trajectory() {
     require_passed(&made(&campaign, 0..60));
 }
 
-/// Four moves of each.
+/// Eight moves of each.
 #[test]
 fn the_tip_of_every_rig_stays_on_its_trajectory() {
     let campaign = MoveCampaign {
@@ -64,7 +64,30 @@ fn the_tip_of_every_rig_stays_on_its_trajectory() {
         rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
         payload_kg: None,
     };
-    require_passed(&made(&campaign, 0..4 * READY_RIGS.len() as u64));
+    require_passed(&made(&campaign, 0..8 * READY_RIGS.len() as u64));
+}
+
+/// A payload that was hung on a leg may take the last newtons below the maximum tension, to which no target leads: such a leg never set out, wherever it
+/// was sent, or it stopped 0.2 mm before a pose that takes them.
+#[test]
+fn a_leg_that_takes_the_last_newtons_to_be_held_moves() {
+    for (seed, payload_kg, number) in [
+        (803, Some(2.0), 3),
+        (803, Some(2.0), 31),
+        (805, Some(2.0), 20),
+        (815, None, 31),
+        (816, None, 25),
+    ] {
+        let campaign = MoveCampaign {
+            seed,
+            rigs: match payload_kg {
+                Some(_) => vec![rig("table1")],
+                None => READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
+            },
+            payload_kg,
+        };
+        require_passed(&made(&campaign, number..number + 1));
+    }
 }
 
 /// Between poses whose tensions are within their limits for the payload, whatever it is: on the way they swing beyond them by little.
@@ -198,10 +221,10 @@ fn the_tip_comes_to_rest_with_a_cell_that_is_off() {
     }
 }
 
-/// The same moves, each off its trajectory by how much farther than it rests off the commanded point.
+/// The same moves, each off its trajectory but for how it rests off the commanded point.
 fn judged_about_rest(mut moved: Vec<Moved>) -> Vec<Moved> {
     for moved in &mut moved {
-        moved.off_mm -= moved.rest_mm;
+        moved.off_mm = moved.off_about_rest_mm;
     }
     moved
 }

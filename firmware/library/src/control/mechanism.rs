@@ -16,6 +16,8 @@ pub struct Mechanism<T> {
     pub tendons: [Tendon<T>; 3],
     /// The tensions that targets may have.
     pub bounds: TensionBounds<T>,
+    /// Tensions of which some have to hold a pose.
+    pub holding_bounds: TensionBounds<T>,
     /// Lowest tension allowed, N.
     pub f_min_n: T,
     /// Highest tension allowed, N.
@@ -45,6 +47,7 @@ impl<T: Scalar> Mechanism<T> {
             tendons: TendonParameters::validated_all(&settings.tendons)?,
             // In the last newtons below the maximum tension a motor is slowed down: no target leads there.
             bounds: TensionBounds::new(f_min_n, f_max_n - band_n.into())?,
+            holding_bounds: TensionBounds::new(f_min_n, f_max_n)?,
             f_min_n,
             f_max_n,
             leg: Load::new(&rig, T::zero())?,

@@ -175,7 +175,8 @@ impl<T: Scalar> TargetGenerator<T> {
         moment -= demand.turn.acceleration * mechanism.inertia(demand.payload_kg);
         moment -= demand.turn.damping;
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
-        // At the edge of what the bounds allow, a motion may take more for a moment; the pose itself has to be held within them.
+        // At the edge of what the bounds allow, a motion may take more for a moment, and a payload that was hung on the leg for good; the pose itself has
+        // to be held without the last newtons. The most that any tendon is asked for is what the bounds allow.
         let feasible = distribution.feasible();
         if !feasible && !holds(mechanism, &kinematics, &plane, &held)? {
             return Err(Error::Infeasible);
@@ -265,7 +266,8 @@ fn holds<T: Scalar>(
     plane: &FreePlane<T>,
     moment: &Vector3<T>,
 ) -> Result<bool, Error> {
-    let distribution = distribute(&kinematics.moment_map, plane, moment, &mechanism.bounds)?;
+    let bounds = &mechanism.holding_bounds;
+    let distribution = distribute(&kinematics.moment_map, plane, moment, bounds)?;
     Ok(distribution.feasible())
 }
 

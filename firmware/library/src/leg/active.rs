@@ -224,6 +224,11 @@ impl<T: Scalar> Active<T> {
         self.trajectory.moving() || !self.stretch.is_over() || self.station.corrects()
     }
 
+    /// Whether it stays where it is, as there is no target where it was sent.
+    pub fn stays(&self, shared: &Shared<T>) -> bool {
+        self.stuck && shared.refused && !self.trajectory.moving()
+    }
+
     /// Leads the leg straight down, to be disarmed there.
     pub fn disarm(&mut self, shared: &mut Shared<T>) {
         self.disarming = true;

@@ -5,7 +5,7 @@ use super::jogging::Jogging;
 use super::mode::Mode;
 use super::shared::Shared;
 use super::{CommandOutcome, Leg};
-use crate::command::{Command, CommandRefusal};
+use crate::command::{Command, CommandRefusal, Compensation};
 use crate::control::{JogBounds, Measured, PretensionDemand};
 use crate::jog::JogDemand;
 use crate::set_point::{SetPoint, StreamTension};
@@ -75,7 +75,7 @@ impl<T: Scalar> Leg<T> {
                 towards,
             } => self.demand_stiffness(demand_nm_per_rad, towards),
             Command::Compensation(compensation) => {
-                self.shared.compensation = compensation;
+                self.compensate(compensation, measured);
                 Ok(())
             }
             Command::Stop => self.end(Event::Stop, measured),
@@ -96,6 +96,22 @@ impl<T: Scalar> Leg<T> {
                 }
                 Ok(())
             }
+        }
+    }
+
+    /// Compensates the load otherwise. A leg that stayed where it was, as no tensions held what was taken for its load, goes on from there as one that is
+    /// armed: its last target was made for that load.
+    #[cold]
+    #[inline(never)]
+    fn compensate(&mut self, compensation: Compensation, measured: &Measured<T>) {
+        self.shared.compensation = compensation;
+        if let Mode::Active(active) = &mut self.mode
+            && active.stays(&self.shared)
+        {
+            self.shared.refused = false;
+            *active = Active::begin(&mut self.shared, measured);
+            // They need a target: the search comes first.
+            self.offsets_had = true;
         }
     }
 

@@ -19,8 +19,8 @@ impl Reference {
         }
     }
 
-    /// How far the true tip is off, m, in the ticks in which the next target comes: the tip is that after the tick before.
-    pub fn tip_error_m(&mut self, stand: &Stand) -> Option<f64> {
+    /// From the reference to the true tip, m, in the ticks in which the next target comes: the tip is that after the tick before.
+    pub fn tip_error_m(&mut self, stand: &Stand) -> Option<Vector3<f64>> {
         let target = stand.telemetry.as_ref()?.target;
         let before_m = self.tip_m.replace(stand.truth.tip_m);
         if self.last == Some(target) {
@@ -29,6 +29,6 @@ impl Reference {
         let last = self.last.replace(target)?;
         let [x, y] = last.map(f64::from);
         let z = -(1.0 - x * x - y * y).max(0.0).sqrt();
-        Some((before_m? - Vector3::new(x, y, z) * self.tip_length_m).norm())
+        Some(before_m? - Vector3::new(x, y, z) * self.tip_length_m)
     }
 }
