@@ -155,6 +155,9 @@ fn worst(rows: &[MarginRow], feedback: Feedback, margin: Margin) -> Option<&Wors
         .min_by(|a, b| a.value.total_cmp(&b.value))
 }
 
+/// Farthest that the phase of the trim's loop is from 0°, which has no gain margin.
+const TRIM_PHASE_DEG: f64 = 170.0;
+
 /// Whether a loop that was measured has no such margin: the phase of the trim does not come to ±180°, and the gain of damping and tension may
 /// stay below 1.
 fn has_none(swept: &[Swept], feedback: Feedback, margin: Margin) -> bool {
@@ -162,7 +165,9 @@ fn has_none(swept: &[Swept], feedback: Feedback, margin: Margin) -> bool {
     let points: Vec<_> = of_loop.flat_map(|one| &one.points).collect();
     assert!(!points.is_empty(), "{feedback:?} is not measured");
     match (feedback, margin) {
-        (Feedback::Trim, Margin::Gain) => true,
+        (Feedback::Trim, Margin::Gain) => {
+            points.iter().all(|point| point.phase_deg.abs() < TRIM_PHASE_DEG)
+        }
         (Feedback::Damping | Feedback::Tension, Margin::Phase) => {
             points.iter().all(|point| point.gain_db < 0.0)
         }

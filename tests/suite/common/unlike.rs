@@ -5,9 +5,9 @@
 use leg_rig::ready_rigs::{self, READY_RIGS};
 use leg_rig::rig_file::RigFile;
 
-/// What is added to a rig file: damping of joint and tendons halved and doubled, friction of the motors halved and half more, play of
-/// the gears none and double.
-const UNLIKE: [(&str, &str); 6] = [
+/// What is added to a rig file: damping of joint and tendons halved and doubled, friction of the motors and of the screws halved and half more,
+/// play of the gears none and double.
+const UNLIKE: [(&str, &str); 8] = [
     (
         "half the damping",
         "[simulation]\njoint_damping_nm_s_per_rad = 0.015\ntendon_damping_n_s_per_m = 100\n",
@@ -23,6 +23,15 @@ const UNLIKE: [(&str, &str); 6] = [
     (
         "half more friction",
         "[actuator]\nfriction_nm = 1.35e-3\n[control.servo]\nfriction_a = 0.1\n",
+    ),
+    // A screw of the efficiency η loses 1/η - 1 of the force: 2.33 by the settings.
+    (
+        "half the friction of the screws",
+        "[actuator]\nscrew_efficiency = 0.4615\n[control.servo]\npull_a_per_n = 0.006\n",
+    ),
+    (
+        "half more friction of the screws",
+        "[actuator]\nscrew_efficiency = 0.2222\n[control.servo]\npull_a_per_n = 0.006\n",
     ),
     (
         "no play",
