@@ -63,6 +63,11 @@ pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
         row(ui, faint("tilt"), tilt_deg, "°", estimated);
         let payload_kg = telemetry.payload_kg.into();
         row(ui, faint("payload"), payload_kg, "kg", estimated);
+        let elongation = f64::from(telemetry.elongation_factor);
+        // Only where the leg has found that its tendons are not as the settings say.
+        if elongation != 1.0 {
+            row(ui, faint("elongation"), elongation, "×", estimated);
+        }
         ui.label(faint("tensions"));
         tensions(ui, telemetry.tensions_n);
         ui.end_row();

@@ -165,9 +165,9 @@ fn has_none(swept: &[Swept], feedback: Feedback, margin: Margin) -> bool {
     let points: Vec<_> = of_loop.flat_map(|one| &one.points).collect();
     assert!(!points.is_empty(), "{feedback:?} is not measured");
     match (feedback, margin) {
-        (Feedback::Trim, Margin::Gain) => {
-            points.iter().all(|point| point.phase_deg.abs() < TRIM_PHASE_DEG)
-        }
+        (Feedback::Trim, Margin::Gain) => points
+            .iter()
+            .all(|point| point.phase_deg.abs() < TRIM_PHASE_DEG),
         (Feedback::Damping | Feedback::Tension, Margin::Phase) => {
             points.iter().all(|point| point.gain_db < 0.0)
         }

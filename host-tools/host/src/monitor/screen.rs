@@ -108,6 +108,15 @@ fn commanded_words(telemetry: &Telemetry<f32>) -> String {
     }
 }
 
+/// By how much the tendons stretch, where the leg has found that they are not as the settings say.
+fn elongation_words(factor: f32) -> String {
+    if factor == 1.0 {
+        String::new()
+    } else {
+        format!("; the tendons stretch {factor:.3} times as the settings say")
+    }
+}
+
 fn bar_lines(view: &MonitorView, telemetry: &Telemetry<f32>, width: u16) -> Vec<Line<'static>> {
     let width = usize::from(width.saturating_sub(BAR_LABEL_WIDTH));
     let bars = (1..).zip(telemetry.tensions_n);
@@ -128,10 +137,11 @@ fn load_lines(view: &MonitorView, telemetry: &Telemetry<f32>) -> Vec<Line<'stati
     );
     vec![
         Line::from(format!(
-            "stiffness  {:.2} N·m/rad at pretension {:.1} N{}",
+            "stiffness  {:.2} N·m/rad at pretension {:.1} N{}{}",
             telemetry.stiffness_nm_per_rad,
             telemetry.pretension_n,
-            commanded_words(telemetry)
+            commanded_words(telemetry),
+            elongation_words(telemetry.elongation_factor)
         )),
         Line::from(format!(
             "load       {x:.3}, {y:.3} N·m beyond the leg's own, payload {:.3} kg",

@@ -102,6 +102,21 @@ fn a_leg_before_homing_on_a_narrow_terminal() {
 }
 
 #[test]
+fn tendons_that_stretch_otherwise_are_told() {
+    let told = |elongation_factor| {
+        let mut view = MonitorView::new("a leg", &settings());
+        let telemetry = Telemetry {
+            elongation_factor,
+            ..telemetry()
+        };
+        view.take(&telemetry, f64::NAN, 0);
+        let screen = screen(&view, [120, 40]);
+        screen.contains("the tendons stretch 1.183 times as the settings say")
+    };
+    assert!(told(1.183) && !told(1.0));
+}
+
+#[test]
 fn no_size_of_the_terminal_is_too_small() {
     let mut view = MonitorView::new("a leg", &settings());
     for size in [[1, 1], [10, 3], [20, 40]] {

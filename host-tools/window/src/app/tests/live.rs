@@ -32,6 +32,19 @@ fn report(window: &mut Window, server: &Server) {
     window.frames(3);
 }
 
+#[test]
+fn tendons_that_stretch_otherwise_are_told() {
+    let (mut window, server) = live();
+    assert!(!window.says("elongation"));
+    let telemetry = *Simulation::new().unwrap().telemetry().unwrap();
+    server.report(Telemetry {
+        elongation_factor: 1.183,
+        ..telemetry
+    });
+    window.frames(3);
+    assert!(window.says("elongation") && window.says("1.18 ×"));
+}
+
 fn spoken(window: &Window) -> String {
     let state = serde_json::to_value(window.app.state()).unwrap();
     state["spoken"].as_str().unwrap().into()
