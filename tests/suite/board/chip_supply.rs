@@ -12,7 +12,8 @@ use stm32g474_emulator::board::Board;
 
 /// The brown-out level, the lowest supply of a dip in mV, whether it resets the chip, and what that tells afterwards: one that
 /// goes on tells what it told before.
-const DIPS: [(u8, u32, bool, ResetCause); 5] = [
+const DIPS: [(u8, u32, bool, ResetCause); 6] = [
+    (0, 2_850, false, ResetCause::Power),
     (0, 2_000, false, ResetCause::Power),
     (0, 1_500, true, ResetCause::BrownOut),
     (0, 500, true, ResetCause::Power),

@@ -247,9 +247,42 @@ impl<T: Scalar> Sine<T> {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{SINE_SETTLE_S, ServoResponse, ServoRun, Sine};
-    use crate::control::ticks;
+    use crate::control::{JogBounds, ticks};
     use crate::leg::shared::{Checked, Shared};
     use crate::settings::Settings;
+
+    /// What a motor that stands gets drives twice the highest current of homing at the most, whatever is asked of its servo.
+    #[test]
+    fn a_motor_that_stands_gets_no_more_than_twice_the_current_of_homing() {
+        let settings = Settings::table_1().unwrap();
+        let servo = &settings.servos[0];
+        let friction_a = f64::from(servo.friction_a);
+        let pull_a = f64::from(servo.pull_a_per_n) * f64::from(settings.homing.f_max_n);
+        let bound_v = 2.0 * (1.5 * friction_a + pull_a) * f64::from(servo.resistance_ohm);
+        let driving_max_v = JogBounds::<f64>::new(&settings, servo).driving_max_v();
+        let start_m = 0.01;
+        for run in [
+            ServoRun::step_by(3e-4, start_m, driving_max_v),
+            ServoRun::step_by(-3e-4, start_m, driving_max_v),
+            ServoRun::turn_by(1e-2, 1e-3, 6.0, 20, start_m, driving_max_v),
+        ] {
+            let mut run = run;
+            let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+            let axis = &mut shared.axes[0];
+            axis.rest(start_m);
+            for _ in 0..ticks(0.1) {
+                axis.track(start_m);
+            }
+            let mut most_v = 0.0_f64;
+            for _ in 0..ticks(0.3) {
+                axis.track(start_m);
+                most_v = most_v.max(run.step(axis, start_m, 24.0).abs());
+            }
+            // It is reached but for the greatest duty.
+            let part = most_v / bound_v;
+            assert!((0.9..1.0 + 1e-6).contains(&part), "{most_v} of {bound_v} V");
+        }
+    }
 
     /// Both ways: what a motor lacks of its travel is no overshoot.
     #[test]
