@@ -127,7 +127,7 @@ impl CommandedLeg for SharedLeg {
     }
 
     fn state(&mut self) -> State {
-        with_control(|control| control.leg.state()).unwrap_or(State::Boot)
+        with_control(|control| control.leg.state()).unwrap_or(self.telemetry.state)
     }
 
     fn telemetry(&mut self) -> Telemetry<f32> {

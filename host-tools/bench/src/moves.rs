@@ -30,7 +30,7 @@ const WATCHED_TICKS: usize = 8;
 
 /// From when the tip counts as at rest, mm.
 const SETTLED_MM: f64 = 0.02;
-/// By then the trajectory moves.
+/// A leg that sets out still moves then; one that finds no target has stopped in the first cycle.
 const BEGUN_S: f64 = 0.05;
 
 /// Longest move, s.
@@ -194,7 +194,7 @@ fn go(drawn: &DrawnMove, stand: &mut Stand, moved: &mut Moved) -> Result<(), Str
             moved.way.push((moved.took_s, off_mm));
             errors_m.push(error_m);
         }
-        began |= stand.moving();
+        began |= moved.took_s > BEGUN_S && stand.moving();
         if moved.took_s > BEGUN_S && !stand.moving() {
             break;
         }

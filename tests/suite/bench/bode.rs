@@ -155,7 +155,7 @@ fn worst(rows: &[MarginRow], feedback: Feedback, margin: Margin) -> Option<&Wors
         .min_by(|a, b| a.value.total_cmp(&b.value))
 }
 
-/// Farthest that the phase of the trim's loop is from 0°, which has no gain margin.
+/// The loop of the trim has no gain margin: its phase is within this of 0°.
 const TRIM_PHASE_DEG: f64 = 170.0;
 
 /// Whether a loop that was measured has no such margin: the phase of the trim does not come to ±180°, and the gain of damping and tension may

@@ -57,11 +57,11 @@ fn every_command() -> impl Iterator<Item = Command> {
 
 /// Asks a leg at rest for something, and measures until the reply.
 fn ask(chip: &mut Chip, meter: &mut LatencyMeter, request: &HostRequest) -> HostReply {
-    ask_meanwhile(chip, meter, request, vary_cells)
+    ask_with_cells(chip, meter, request, vary_cells)
 }
 
-/// Asks for something, and measures until the reply; the cells read meanwhile what they are let.
-fn ask_meanwhile(
+/// Asks for something, and measures until the reply; `cells` sets what the load cells show meanwhile.
+fn ask_with_cells(
     chip: &mut Chip,
     meter: &mut LatencyMeter,
     request: &HostRequest,
@@ -128,13 +128,18 @@ fn serial_latency(image: &Path) -> (u64, u32) {
 pub fn driven_latency(chip: &mut Chip) -> (u64, u32) {
     identity(chip).unwrap();
     let mut meter = LatencyMeter::new().unwrap();
-    let keep_alive = commanded(Command::KeepAlive);
-    for request in [HostRequest::Telemetry, keep_alive, HostRequest::Telemetry] {
-        let reply = ask_meanwhile(chip, &mut meter, &request, |_| ());
-        if let HostReply::Telemetry(report) = &reply {
-            // The sensors' codes stay what they were: the leg has not noticed yet.
-            assert_eq!(report.telemetry.state, State::Active);
-        }
+    // The sensors' codes stay what they were: the leg has not noticed yet.
+    let mut ask = |request: &HostRequest| ask_with_cells(chip, &mut meter, request, |_| ());
+    for _ in 0..2 {
+        let HostReply::Telemetry(report) = ask(&HostRequest::Telemetry) else {
+            panic!("no telemetry")
+        };
+        assert_eq!(report.telemetry.state, State::Active);
+        assert_eq!(
+            ask(&HostRequest::SaveSettings),
+            HostReply::Refused(HostRefusal::Driven)
+        );
+        assert_eq!(ask(&commanded(Command::KeepAlive)), HostReply::Done);
     }
     meter.worst
 }

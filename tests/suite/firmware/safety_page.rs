@@ -5,6 +5,7 @@
 use crate::common::quoted_tests::{require_test, test_sources};
 use leg_boards::image::workspace_root;
 use leg_firmware::jog::JOG_TRAVEL_MAX_M;
+use leg_firmware::sensors::CURRENT_ZERO_PART;
 use leg_rig::control_settings;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
@@ -129,6 +130,11 @@ fn the_settings_that_the_page_names_are_the_built_in_ones() {
             "slowly at first, {} N beyond it by the whole speed",
             2.5 * settings.greatest(|servo| servo.f_max_band_n)
         ),
+        format!(
+            "whose zero is off by {:.0} % of its range at the start",
+            100.0 * CURRENT_ZERO_PART
+        ),
+        format!("no more than {} N (half of `jump_n`)", 0.5 * limits.jump_n),
         format!(
             "turns at a low voltage by {} mm of tendon at the most",
             1e3 * JOG_TRAVEL_MAX_M

@@ -162,15 +162,15 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
         let real = drawn(&configured, seed);
         let (line, mut operator, _) = leg(&configured, &real, seed);
         let plan = SwingPlan::new(&configured);
-        let mut farthest_deg = 0.0_f64;
+        let mut leaned_deg = 0.0_f64;
         let mut seen = |_: &_| {
             let tip_m = line.with_plant(|plant| plant.truth().tip_m);
             let tilt_deg = tip_m.x.hypot(tip_m.y).atan2(-tip_m.z).to_degrees();
-            farthest_deg = farthest_deg.max(tilt_deg);
+            leaned_deg = leaned_deg.max(tilt_deg);
         };
         let swings = measure_swing(&mut operator, &plan, &configured, &mut seen).unwrap();
-        // As the page of safety says: it leans, and swings, by 3°.
-        assert!((2.5..3.5).contains(&farthest_deg), "{farthest_deg}°");
+        // It is seen where it is held after each swing.
+        assert!((2.5..3.5).contains(&leaned_deg), "{leaned_deg}°");
         assert_eq!(swings.all.len(), 3);
         for swing in &swings.all {
             let real_hz = true_frequency_hz(&real, swing.pretension_n);

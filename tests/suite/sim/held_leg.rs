@@ -123,3 +123,34 @@ fn a_held_leg_is_moved_by_no_tension() {
     assert!(range_n[1] > 1.05 * f_max_n, "{range_n:?} N");
     assert!(range_n[0] < 0.5 * paper().f_min_n, "{range_n:?} N");
 }
+
+/// A push that loads a tendon by more than a tenth above the maximum tension ramps down a leg that was stopped. One that lost its host stays: nothing is known
+/// of a leg that a fault holds but that it is held.
+#[test]
+fn only_a_leg_that_is_held_without_a_fault_is_let_down() {
+    let pose_deg = [60.0, 20.0];
+    let stopped = held(110.0, pose_deg, 0.5, false);
+    let mut rig = paper();
+    rig.pretension_n = 110.0;
+    let mut lost = armed(&rig, pose_deg, 0.5, 81);
+    lost.silence();
+    pass(&mut lost, 0.5);
+    assert_eq!(faults(&lost), FaultSet::single(Fault::CommandTimeout));
+    for (mut stand, let_down) in [(stopped, true), (lost, false)] {
+        let plant = stand.plant();
+        plant.push(plant.transverse(60.0) * 30.0, 2.0, 1.0);
+        let mut highest_n = 0.0_f64;
+        for _ in 0..ticks(2.5) {
+            stand.tick().unwrap();
+            highest_n = stand.truth.tensions_n.into_iter().fold(highest_n, f64::max);
+        }
+        assert!(highest_n > 1.15 * rig.f_max_n, "{highest_n} N");
+        assert_eq!(faults(&stand).has(Fault::OverTension), let_down);
+        assert_eq!(
+            stand.state() == State::Held,
+            !let_down,
+            "{:?}",
+            stand.state()
+        );
+    }
+}

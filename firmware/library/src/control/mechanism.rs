@@ -16,8 +16,8 @@ pub struct Mechanism<T> {
     pub tendons: [Tendon<T>; 3],
     /// The tensions that targets may have.
     pub bounds: TensionBounds<T>,
-    /// Tensions of which some have to hold a pose.
-    pub holding_bounds: TensionBounds<T>,
+    /// Highest tension of a target where these do not suffice, N: a motor pulls at a quarter of its speed there.
+    pub holding_max_n: T,
     /// Lowest tension allowed, N.
     pub f_min_n: T,
     /// Highest tension allowed, N.
@@ -41,13 +41,13 @@ impl<T: Scalar> Mechanism<T> {
         let parameters = settings.rig.map(T::from);
         let rig = Rig::new(&parameters)?;
         let (f_min_n, f_max_n) = (T::from(settings.f_min_n), T::from(settings.f_max_n));
-        let band_n = settings.greatest(|servo| servo.f_max_band_n);
+        let slowed_n = T::from(settings.greatest(|servo| servo.f_max_band_n));
         Ok(Self {
             support: Support::new(settings.support, settings.joint.map(T::from))?,
             tendons: TendonParameters::validated_all(&settings.tendons)?,
             // In the last newtons below the maximum tension a motor is slowed down: no target leads there.
-            bounds: TensionBounds::new(f_min_n, f_max_n - band_n.into())?,
-            holding_bounds: TensionBounds::new(f_min_n, f_max_n)?,
+            bounds: TensionBounds::new(f_min_n, f_max_n - slowed_n)?,
+            holding_max_n: f_max_n - slowed_n * T::from(0.25),
             f_min_n,
             f_max_n,
             leg: Load::new(&rig, T::zero())?,

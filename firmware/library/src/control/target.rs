@@ -52,6 +52,8 @@ pub struct TargetGenerator<T> {
     share_step: T,
     torsion: Torsion<T>,
     damping: TendonDamping<T>,
+    /// Whether a target may take some of the last newtons below the maximum tension.
+    may_take_last_newtons: bool,
 }
 
 /// What a target is made for.
@@ -86,6 +88,7 @@ impl<T: Scalar> TargetGenerator<T> {
             share_step: T::from(CYCLE_S / settings.motion.load_time_s),
             torsion: Torsion::new(),
             damping: TendonDamping::new(settings),
+            may_take_last_newtons: false,
         }
     }
 
@@ -117,6 +120,11 @@ impl<T: Scalar> TargetGenerator<T> {
     #[inline(always)]
     pub fn damped_m(&self) -> &[T; 3] {
         self.damping.damped_m()
+    }
+
+    /// Has targets take some of the last newtons below the maximum tension, or not.
+    pub fn take_last_newtons(&mut self, may: bool) {
+        self.may_take_last_newtons = may;
     }
 
     /// A leg at rest: nothing is damped.
@@ -175,16 +183,24 @@ impl<T: Scalar> TargetGenerator<T> {
         moment -= demand.turn.acceleration * mechanism.inertia(demand.payload_kg);
         moment -= demand.turn.damping;
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
-        // At the edge of what the bounds allow, a motion may take more for a moment, and a payload that was hung on the leg for good; the pose itself has
-        // to be held without the last newtons. The most that any tendon is asked for is what the bounds allow.
         let feasible = distribution.feasible();
-        if !feasible && !holds(mechanism, &kinematics, &plane, &held)? {
-            return Err(Error::Infeasible);
+        let mut range_n = [distribution.pretension_min, distribution.pretension_max];
+        if !feasible {
+            let [lowest_n, highest_n] = range_n;
+            range_n = if self.may_take_last_newtons
+                && is_held_by_last_newtons(mechanism, &distribution)
+            {
+                [lowest_n; 2]
+            } else if holds(mechanism, &kinematics, &plane, &held)? {
+                // A motion may take more for a moment, which one tendon then lacks. The pose itself has to be held.
+                [highest_n; 2]
+            } else {
+                return Err(Error::Infeasible);
+            };
         }
         let measured_pretension_n = || pretension(&distribution, measured_n);
         let start_n = self.pretension_n.unwrap_or_else(measured_pretension_n);
-        let (pretension_n, limited) =
-            self.next_pretension(start_n, demand.pretension_n, &distribution);
+        let (pretension_n, limited) = self.next_pretension(start_n, demand.pretension_n, range_n);
         self.pretension_n = Some(pretension_n);
         let tensions = distribution.tensions(pretension_n);
         if mechanism.support.twists() {
@@ -232,13 +248,7 @@ impl<T: Scalar> TargetGenerator<T> {
 
     /// The pretension a step nearer to the demand, inside what the bounds allow, and whether they hold it back.
     #[inline(always)]
-    fn next_pretension(
-        &self,
-        pretension_n: T,
-        wish_n: T,
-        distribution: &Distribution<T, 3>,
-    ) -> (T, bool) {
-        let (lowest, highest) = (distribution.pretension_min, distribution.pretension_max);
+    fn next_pretension(&self, pretension_n: T, wish_n: T, [lowest, highest]: [T; 2]) -> (T, bool) {
         let allowed = min(max(wish_n, lowest), highest);
         let step = clamp_symmetric(allowed - pretension_n, self.pretension_step_n);
         // The pose may narrow the range faster than the pretension follows.
@@ -266,9 +276,21 @@ fn holds<T: Scalar>(
     plane: &FreePlane<T>,
     moment: &Vector3<T>,
 ) -> Result<bool, Error> {
-    let bounds = &mechanism.holding_bounds;
-    let distribution = distribute(&kinematics.moment_map, plane, moment, bounds)?;
+    let distribution = distribute(&kinematics.moment_map, plane, moment, &mechanism.bounds)?;
     Ok(distribution.feasible())
+}
+
+/// Whether the lowest pretension, at which no tendon pulls by less than the minimum, takes no more than a part of the last newtons below the maximum.
+#[cold]
+fn is_held_by_last_newtons<T: Scalar>(
+    mechanism: &Mechanism<T>,
+    distribution: &Distribution<T, 3>,
+) -> bool {
+    // Rounding shall not decide.
+    let least_n = mechanism.f_min_n * T::from(0.999);
+    let tensions_n = distribution.tensions(distribution.pretension_min);
+    let allowed = |&n: &T| n >= least_n && n <= mechanism.holding_max_n;
+    tensions_n.iter().all(allowed)
 }
 
 /// The pretension that tensions have.

@@ -30,8 +30,8 @@ pub struct Active<T> {
     pub station: StationKeeping<T>,
     /// What was found in the last turn of the offsets: a station too far away, a swing that does not end.
     pub faults: FaultSet,
-    /// Whether there was no target on the way since it was last led straight down.
-    stuck: bool,
+    /// Whether there is no target where it was sent: it stays.
+    without_target: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
     /// Whether the load stays as it is: where it was frozen, until the leg rests. On its way a push that came meanwhile would be taken for a payload
@@ -74,7 +74,7 @@ impl<T: Scalar> Active<T> {
             disarming: false,
             station: StationKeeping::No,
             faults: FaultSet::NONE,
-            stuck: false,
+            without_target: false,
             offsets: LengthOffsets::new(shared.play.lag_m()),
             slack: Slack {
                 left_m: (taut && compensated).then(T::zero),
@@ -110,6 +110,13 @@ impl<T: Scalar> Active<T> {
                 }
                 if self.trajectory.moving() {
                     shared.damping.forget_swing();
+                } else if shared
+                    .target
+                    .as_ref()
+                    .is_none_or(|target| target.distribution.feasible())
+                {
+                    // Load cells that are wrong would lead a leg at rest there.
+                    shared.targets.take_last_newtons(false);
                 }
                 let off_station = self.station.kept().is_some_and(Station::too_far);
                 self.faults = FaultSet::NONE;
@@ -149,6 +156,7 @@ impl<T: Scalar> Active<T> {
     /// Goes to a point.
     pub fn go(&mut self, shared: &mut Shared<T>, to: &Direction<T>) {
         self.leave_stream(shared);
+        shared.targets.take_last_newtons(true);
         self.trajectory.go(to.half_tangent());
         let along = to.vector();
         self.commanded = Some([along.x, along.y]);
@@ -193,6 +201,7 @@ impl<T: Scalar> Active<T> {
                     motion: self.trajectory.next_motion(),
                 };
                 stream.begin(start, point)?;
+                shared.targets.take_last_newtons(true);
                 self.trajectory.begin_stream();
                 self.commanded = None;
                 shared.refused = false;
@@ -224,22 +233,22 @@ impl<T: Scalar> Active<T> {
         self.trajectory.moving() || !self.stretch.is_over() || self.station.corrects()
     }
 
-    /// Whether it stays where it is, as there is no target where it was sent.
-    pub fn stays(&self, shared: &Shared<T>) -> bool {
-        self.stuck && shared.refused && !self.trajectory.moving()
+    /// Whether it has come to rest where it is, as there is no target where it was sent.
+    pub fn rests_without_target(&self) -> bool {
+        self.without_target && !self.disarming && !self.moving()
     }
 
     /// Leads the leg straight down, to be disarmed there.
     pub fn disarm(&mut self, shared: &mut Shared<T>) {
         self.disarming = true;
-        self.stuck = false;
+        self.without_target = false;
         self.go(shared, &Direction::straight_down());
     }
 
     /// Whether it was led down, or cannot be.
     #[inline(always)]
     pub fn led_down(&self) -> bool {
-        self.disarming && (!self.trajectory.moving() || self.stuck)
+        self.disarming && (!self.trajectory.moving() || self.without_target)
     }
 
     /// Whether it was armed just now with tendons that pulled already, one of which is below the minimum tension since.
@@ -338,6 +347,7 @@ impl<T: Scalar> Active<T> {
         }
         target.limited &= taut;
         shared.target = Some(target);
+        self.without_target = false;
         Ok(())
     }
 
@@ -375,7 +385,7 @@ impl<T: Scalar> Active<T> {
         shared.targets.rest();
         self.offsets.stay();
         shared.refused = true;
-        self.stuck = true;
+        self.without_target = true;
     }
 }
 

@@ -99,19 +99,19 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// Compensates the load otherwise. A leg that stayed where it was, as no tensions held what was taken for its load, goes on from there as one that is
-    /// armed: its last target was made for that load.
+    /// Changes the compensation. A leg whose load is left out, and that stayed where it was as no tensions held what was taken for that load, goes on from
+    /// there as one that is armed: its last target was made for that load.
     #[cold]
     #[inline(never)]
     fn compensate(&mut self, compensation: Compensation, measured: &Measured<T>) {
         self.shared.compensation = compensation;
-        if let Mode::Active(active) = &mut self.mode
-            && active.stays(&self.shared)
-        {
+        let active = self.mode.active();
+        let rests = active.is_some_and(Active::rests_without_target);
+        if rests && compensation == Compensation::Off {
             self.shared.refused = false;
-            *active = Active::begin(&mut self.shared, measured);
-            // They need a target: the search comes first.
-            self.offsets_had = true;
+            // The mode is left, so that it begins anew.
+            self.mode = Mode::Disarmed;
+            self.enter(State::Active, measured);
         }
     }
 

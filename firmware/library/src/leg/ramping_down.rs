@@ -53,7 +53,8 @@ impl<T: Scalar> RampingDown<T> {
             arrived &= (pulled - goal.pulled_m).abs() <= near;
         }
         self.ticks_left = self.ticks_left.saturating_sub(1);
-        arrived || self.ticks_left == 0
+        // Nor is there for an estimate and a mode that begins.
+        (arrived || self.ticks_left == 0) && phase != Phase::Estimate
     }
 }
 

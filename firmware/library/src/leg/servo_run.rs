@@ -278,7 +278,7 @@ mod tests {
                 axis.track(start_m);
                 most_v = most_v.max(run.step(axis, start_m, 24.0).abs());
             }
-            // It is reached but for the greatest duty.
+            // The bound is reached; the greatest duty takes a twentieth of it.
             let part = most_v / bound_v;
             assert!((0.9..1.0 + 1e-6).contains(&part), "{most_v} of {bound_v} V");
         }

@@ -113,7 +113,7 @@ fn elongation_words(factor: f32) -> String {
     if factor == 1.0 {
         String::new()
     } else {
-        format!("; the tendons stretch {factor:.3} times as the settings say")
+        format!("; elongation {factor:.3} of the settings'")
     }
 }
 
@@ -137,17 +137,19 @@ fn load_lines(view: &MonitorView, telemetry: &Telemetry<f32>) -> Vec<Line<'stati
     );
     vec![
         Line::from(format!(
-            "stiffness  {:.2} N·m/rad at pretension {:.1} N{}{}",
+            "stiffness  {:.2} N·m/rad at pretension {:.1} N{}",
             telemetry.stiffness_nm_per_rad,
             telemetry.pretension_n,
-            commanded_words(telemetry),
-            elongation_words(telemetry.elongation_factor)
+            commanded_words(telemetry)
         )),
         Line::from(format!(
             "load       {x:.3}, {y:.3} N·m beyond the leg's own, payload {:.3} kg",
             telemetry.payload_kg
         )),
-        Line::from(format!("sag        {sag}")),
+        Line::from(format!(
+            "sag        {sag}{}",
+            elongation_words(telemetry.elongation_factor)
+        )),
     ]
 }
 

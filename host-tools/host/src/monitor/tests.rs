@@ -110,8 +110,8 @@ fn tendons_that_stretch_otherwise_are_told() {
             ..telemetry()
         };
         view.take(&telemetry, f64::NAN, 0);
-        let screen = screen(&view, [120, 40]);
-        screen.contains("the tendons stretch 1.183 times as the settings say")
+        let screen = screen(&view, [80, 24]);
+        screen.contains("elongation 1.183 of the settings'")
     };
     assert!(told(1.183) && !told(1.0));
 }

@@ -79,7 +79,8 @@ fn a_jog_is_refused_by_name_in_every_other_state_and_beyond_its_bounds() {
 /// A host that falls silent, and a stop.
 #[test]
 fn silence_and_a_stop_switch_the_motor_off() {
-    for stops in [false, true] {
+    for end in [None, Some(Command::Stop), Some(Command::Disarm)] {
+        let stops = end.is_some();
         let (line, mut operator) = leg(InitialState::Slack);
         let demand = demand(&mut operator, 1, 2.0);
         operator.command(Command::Jog(demand)).unwrap();
@@ -87,8 +88,8 @@ fn silence_and_a_stop_switch_the_motor_off() {
             operator.telemetry().unwrap().telemetry.state,
             State::Jogging
         );
-        if stops {
-            operator.stop().unwrap();
+        if let Some(end) = end {
+            operator.command(end).unwrap();
         }
         // A motor that stops is off at once; one of a silent host within command_time_s, 0.2 s, from the last message on.
         let time_s = f64::from(operator.settings().unwrap().limits.command_time_s);

@@ -124,6 +124,29 @@ fn a_leg_begins_taut_while_its_sensors_settle() {
     }
 }
 
+/// A leg rests without a target from when there is none until there is one, it is sent anywhere, or it is led down to be disarmed.
+#[test]
+fn a_leg_rests_without_a_target_until_it_has_one_or_is_sent() {
+    let stayed = || {
+        let (mut active, mut shared, _) = armed(8.0);
+        assert!(!active.rests_without_target());
+        active.stay(&mut shared);
+        assert!(active.rests_without_target() && shared.refused);
+        (active, shared)
+    };
+    let (mut active, mut shared) = stayed();
+    active.go(&mut shared, &Direction::straight_down());
+    assert!(!active.rests_without_target());
+    let (mut active, mut shared) = stayed();
+    active.disarm(&mut shared);
+    active.stay(&mut shared);
+    assert!(!active.rests_without_target() && active.led_down());
+    let (mut active, mut shared) = stayed();
+    let _ = active.estimate(&mut shared, &measured([64.0; 3]));
+    active.aim(&mut shared, &measured([64.0; 3])).unwrap();
+    assert!(!active.rests_without_target());
+}
+
 /// Where the compensation is frozen the load stays as it is, and then until the leg has come to rest: neither its way nor the command alone
 /// ends that.
 #[test]

@@ -96,6 +96,10 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             percent(AT_MAX_BEYOND)
         ),
         format!(
+            "a current sensor that shows nothing, on a leg that moves: up to {} more",
+            percent(CUT_OFF_BEYOND)
+        ),
+        format!(
             "leaves its load out: up to {} more",
             percent(LEFT_OUT_BEYOND)
         ),

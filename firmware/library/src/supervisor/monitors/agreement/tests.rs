@@ -149,6 +149,28 @@ fn what_curves_do_not_explain_is_a_lie_on_every_support() {
     }
 }
 
+/// While a leg is tensioned its tendons may be of another make, by three tenths of their curves.
+#[test]
+fn what_tendons_of_another_make_do_is_no_lie_while_they_are_tensioned() {
+    let agrees = |growth: &ErrorGrowth, part: f64| {
+        let mut leg = Leg::taut();
+        let begun_m = leg.error.mean_m;
+        // The pretension rises in half a second.
+        (1..=1000).all(|cycle| {
+            let stretched_m = 4e-7 * f64::from(cycle);
+            leg.error.elongations_m = [ELONGATION_M + stretched_m; 3];
+            leg.error.mean_m = begun_m + part * stretched_m;
+            leg.agreement.watch(&leg.error, growth);
+            leg.agreement.agree()
+        })
+    };
+    for sign in [1.0, -1.0] {
+        assert!(agrees(&ErrorGrowth::TENSIONING, sign * 0.29));
+        assert!(!agrees(&ErrorGrowth::TENSIONING, sign * 0.36));
+        assert!(!agrees(&ErrorGrowth::RESTING, sign * 0.29));
+    }
+}
+
 #[test]
 fn what_creeps_or_changes_with_the_pose_is_learned() {
     let mut leg = Leg::taut();

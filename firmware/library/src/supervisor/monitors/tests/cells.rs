@@ -137,10 +137,12 @@ fn a_tension_that_the_lengths_contradict_jumps_by_less() {
 /// are trusted.
 #[test]
 fn a_jump_lasts_until_the_tension_comes_back() {
-    for (led, trusted, counts) in [
-        (true, false, true),
-        (false, true, true),
-        (false, false, false),
+    // By half of the least that counts as one, however far it jumped.
+    for (led, trusted, jumps, counts) in [
+        (true, false, 1.01, true),
+        (true, false, 3.0, true),
+        (false, true, 1.01, true),
+        (false, false, 1.01, false),
     ] {
         let mut watched = Watched::new();
         let jump_n = f64::from(limits().jump_n);
@@ -152,7 +154,7 @@ fn a_jump_lasts_until_the_tension_comes_back() {
             watched.monitors.stay_jumped(&tensions_n)
         };
         assert!(!stays(&watched, 100.0));
-        seen.measured.tensions_n[AXIS] += 1.01 * jump_n;
+        seen.measured.tensions_n[AXIS] += jumps * jump_n;
         assert!(watched.cycle(&seen).has(Fault::TensionJump));
         // Back, which is another jump.
         (seen.led, seen.trusted) = (true, true);
