@@ -80,17 +80,15 @@ fn a_leg_that_takes_the_last_newtons_to_be_held_moves() {
     ] {
         let campaign = MoveCampaign {
             seed,
-            rigs: match payload_kg {
-                Some(_) => vec![rig("table1")],
-                None => READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
-            },
+            rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
             payload_kg,
         };
         let moved = made(&campaign, number..number + 1);
         require_passed(&moved);
         let [least_n, greatest_n] = moved[0].tensions_n;
         let [f_min_n, f_max_n] = [rig("table1").1.f_min_n, rig("table1").1.f_max_n];
-        assert!(greatest_n > f_max_n - 4.0, "{greatest_n} N");
+        // Half a newton for what the cells read.
+        assert!(greatest_n > f_max_n - 4.5, "{greatest_n} N");
         assert!(least_n > 0.5 * f_min_n, "{least_n} N");
     }
 }
