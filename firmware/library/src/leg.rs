@@ -11,6 +11,7 @@ mod length_offsets;
 mod link_watch;
 mod mode;
 mod phase;
+mod pretension_search;
 mod ramping_down;
 mod recorded;
 mod report;

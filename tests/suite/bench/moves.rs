@@ -87,7 +87,7 @@ fn a_leg_that_takes_the_last_newtons_to_be_held_moves() {
         require_passed(&moved);
         let [least_n, greatest_n] = moved[0].tensions_n;
         let [f_min_n, f_max_n] = [rig("table1").1.f_min_n, rig("table1").1.f_max_n];
-        // Half a newton for what the cells read.
+        // Half a newton for what the tensions are off their target.
         assert!(greatest_n > f_max_n - 4.5, "{greatest_n} N");
         assert!(least_n > 0.5 * f_min_n, "{least_n} N");
     }

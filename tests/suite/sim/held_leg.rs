@@ -124,8 +124,8 @@ fn a_held_leg_is_moved_by_no_tension() {
     assert!(range_n[0] < 0.5 * paper().f_min_n, "{range_n:?} N");
 }
 
-/// A push that loads a tendon by more than a tenth above the maximum tension ramps down a leg that was stopped. One that lost its host stays: nothing is known
-/// of a leg that a fault holds but that it is held.
+/// A push that loads a tendon by more than a tenth above the maximum tension ramps down a leg that was stopped. One that lost its host stays: once a fault is
+/// latched no load cell is trusted.
 #[test]
 fn only_a_leg_that_is_held_without_a_fault_is_let_down() {
     let pose_deg = [60.0, 20.0];

@@ -16,7 +16,7 @@ pub struct Mechanism<T> {
     pub tendons: [Tendon<T>; 3],
     /// The tensions that targets may have.
     pub bounds: TensionBounds<T>,
-    /// Highest tension of a target where these do not suffice, N: a motor pulls at a quarter of its speed there.
+    /// Highest tension of a target for which `bounds` do not suffice, N: a motor pulls at a quarter of its speed there.
     pub holding_max_n: T,
     /// Lowest tension allowed, N.
     pub f_min_n: T,
@@ -45,7 +45,7 @@ impl<T: Scalar> Mechanism<T> {
         Ok(Self {
             support: Support::new(settings.support, settings.joint.map(T::from))?,
             tendons: TendonParameters::validated_all(&settings.tendons)?,
-            // In the last newtons below the maximum tension a motor is slowed down: no target leads there.
+            // In the last newtons below the maximum tension a motor is slowed down: a target leads there only where the leg was sent, and by three quarters at the most.
             bounds: TensionBounds::new(f_min_n, f_max_n - slowed_n)?,
             holding_max_n: f_max_n - slowed_n * T::from(0.25),
             f_min_n,

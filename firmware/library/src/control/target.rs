@@ -38,6 +38,14 @@ pub struct Target<T> {
     pub limited: bool,
 }
 
+impl<T: Scalar> Target<T> {
+    /// Whether the bounds leave a range of pretensions that the noise of the load does not close.
+    #[inline(always)]
+    pub fn has_room(&self) -> bool {
+        self.distribution.pretension_max - self.distribution.pretension_min > T::one()
+    }
+}
+
 /// Computes targets, one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetGenerator<T> {
@@ -95,6 +103,7 @@ impl<T: Scalar> TargetGenerator<T> {
     /// Starts anew from the pretension that the tensions have at the first target, with the load held or left out.
     pub fn start(&mut self, compensated: bool) {
         self.pretension_n = None;
+        self.may_take_last_newtons = false;
         self.trim_n = T::zero();
         self.damping.rest();
         self.share = if compensated { T::one() } else { T::zero() };
@@ -122,7 +131,7 @@ impl<T: Scalar> TargetGenerator<T> {
         self.damping.damped_m()
     }
 
-    /// Has targets take some of the last newtons below the maximum tension, or not.
+    /// Has targets take up to three quarters of the last newtons below the maximum tension where they need them, or not.
     pub fn take_last_newtons(&mut self, may: bool) {
         self.may_take_last_newtons = may;
     }
@@ -186,17 +195,18 @@ impl<T: Scalar> TargetGenerator<T> {
         let feasible = distribution.feasible();
         let mut range_n = [distribution.pretension_min, distribution.pretension_max];
         if !feasible {
-            let [lowest_n, highest_n] = range_n;
-            range_n = if self.may_take_last_newtons
-                && is_held_by_last_newtons(mechanism, &distribution)
-            {
-                [lowest_n; 2]
-            } else if holds(mechanism, &kinematics, &plane, &held)? {
-                // A motion may take more for a moment, which one tendon then lacks. The pose itself has to be held.
-                [highest_n; 2]
+            let may = self.may_take_last_newtons;
+            let most_n = if may {
+                last_newtons(mechanism, &distribution)
             } else {
-                return Err(Error::Infeasible);
+                range_n[1]
             };
+            // A motion may take more for a moment, which one tendon then lacks. The pose itself has to be held.
+            let whole = most_n >= range_n[0];
+            if !whole && !holds(mechanism, &kinematics, &plane, &held, may)? {
+                return Err(Error::Infeasible);
+            }
+            range_n = [most_n; 2];
         }
         let measured_pretension_n = || pretension(&distribution, measured_n);
         let start_n = self.pretension_n.unwrap_or_else(measured_pretension_n);
@@ -268,29 +278,34 @@ impl<T: Scalar> TargetGenerator<T> {
     }
 }
 
-/// Whether some tensions inside the bounds hold a moment.
+/// Whether some tensions inside the bounds hold a moment, or some that may take a part of the last newtons.
 #[cold]
 fn holds<T: Scalar>(
     mechanism: &Mechanism<T>,
     kinematics: &Kinematics<T, 3>,
     plane: &FreePlane<T>,
     moment: &Vector3<T>,
+    may_take_last_newtons: bool,
 ) -> Result<bool, Error> {
     let distribution = distribute(&kinematics.moment_map, plane, moment, &mechanism.bounds)?;
-    Ok(distribution.feasible())
+    let whole = || last_newtons(mechanism, &distribution) >= distribution.pretension_min;
+    Ok(distribution.feasible() || may_take_last_newtons && whole())
 }
 
-/// Whether the lowest pretension, at which no tendon pulls by less than the minimum, takes no more than a part of the last newtons below the maximum.
+/// The pretension of tensions that the bounds do not allow, N: the lowest at which no tendon pulls by less than the minimum, or as much of it as three quarters of
+/// the last newtons below the maximum allow. Not a number where a tension is none.
 #[cold]
-fn is_held_by_last_newtons<T: Scalar>(
-    mechanism: &Mechanism<T>,
-    distribution: &Distribution<T, 3>,
-) -> bool {
-    // Rounding shall not decide.
-    let least_n = mechanism.f_min_n * T::from(0.999);
-    let tensions_n = distribution.tensions(distribution.pretension_min);
-    let allowed = |&n: &T| n >= least_n && n <= mechanism.holding_max_n;
-    tensions_n.iter().all(allowed)
+fn last_newtons<T: Scalar>(mechanism: &Mechanism<T>, distribution: &Distribution<T, 3>) -> T {
+    let lowest_n = distribution.pretension_min;
+    let tensions_n = distribution.tensions(lowest_n);
+    let mut most_n = lowest_n;
+    for (&tension_n, &part) in tensions_n.iter().zip(&distribution.per_pretension) {
+        let beyond_n = tension_n - mechanism.holding_max_n;
+        if beyond_n > T::zero() {
+            most_n = min(most_n, lowest_n - beyond_n / part);
+        }
+    }
+    max(most_n, distribution.pretension_max)
 }
 
 /// The pretension that tensions have.

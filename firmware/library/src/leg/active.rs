@@ -3,6 +3,7 @@
 use super::give_way::{GIVEN_WAY_STEPS, gives_way};
 use super::length_offsets::LengthOffsets;
 use super::phase::Phase;
+use super::pretension_search::search_pretension;
 use super::shared::Shared;
 use super::slack::Slack;
 use super::station::{Station, StationKeeping};
@@ -113,7 +114,7 @@ impl<T: Scalar> Active<T> {
                 } else if shared
                     .target
                     .as_ref()
-                    .is_none_or(|target| target.distribution.feasible())
+                    .is_none_or(|target| target.has_room())
                 {
                     // Load cells that are wrong would lead a leg at rest there.
                     shared.targets.take_last_newtons(false);
@@ -379,33 +380,15 @@ impl<T: Scalar> Active<T> {
         for axis in &mut shared.axes {
             axis.lead_by(T::zero());
         }
-        if let Some(target) = &shared.target {
-            self.trajectory.start(target.direction.half_tangent());
-        }
+        let target = shared.target.as_ref();
+        let direction =
+            target.map_or_else(|| shared.estimator.direction(), |target| &target.direction);
+        self.trajectory.start(direction.half_tangent());
         shared.targets.rest();
         self.offsets.stay();
         shared.refused = true;
         self.without_target = true;
     }
-}
-
-/// One step of the search for the pretension, at the last target. Where that is on its way to the one at which a stiffness is searched for, every
-/// second one looks at its own tendons instead: there is no time for both.
-#[inline(never)]
-fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
-    if let Some(target) = &shared.target {
-        let (search, targets) = (&mut shared.pretension, &mut shared.targets);
-        let on_its_way = search.is_far_from(target.pretension_n);
-        if on_its_way && !search.take_turn() {
-            return targets.set_stiffnesses_at(&shared.mechanism, &target.tensions_n);
-        }
-        let payload_kg = shared.estimator.load.payload_kg();
-        let stiffnesses_n_per_m = search.step(&shared.mechanism, target, payload_kg)?;
-        if !on_its_way {
-            targets.set_stiffnesses(&stiffnesses_n_per_m);
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -53,7 +53,7 @@ impl<T: Scalar> RampingDown<T> {
             arrived &= (pulled - goal.pulled_m).abs() <= near;
         }
         self.ticks_left = self.ticks_left.saturating_sub(1);
-        // Nor is there for an estimate and a mode that begins.
+        // A tick has no time for an estimate and for the next mode to begin.
         (arrived || self.ticks_left == 0) && phase != Phase::Estimate
     }
 }
@@ -205,7 +205,14 @@ mod tests {
             |shared: &Shared<f64>| RampingDown::new(shared.limits.relax_ticks, rest_m, false);
         let there_m = rest_m.map(|rest| rest - travel_m);
         let mut arrived = begin(&shared);
-        assert!(arrived.relax(Phase::Command, &mut shared, &measured(there_m)));
+        for (phase, ends) in [
+            (Phase::Command, true),
+            (Phase::Estimate, false),
+            (Phase::Target, true),
+        ] {
+            let ended = arrived.relax(phase, &mut shared, &measured(there_m));
+            assert_eq!(ended, ends);
+        }
         let mut stuck = begin(&shared);
         let stuck_m = [there_m[0], rest_m[1], there_m[2]];
         let end =

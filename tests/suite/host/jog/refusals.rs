@@ -76,7 +76,7 @@ fn a_jog_is_refused_by_name_in_every_other_state_and_beyond_its_bounds() {
     operator.jog(&good).unwrap();
 }
 
-/// A host that falls silent, and a stop.
+/// A host that falls silent, a stop, and a disarm.
 #[test]
 fn silence_and_a_stop_switch_the_motor_off() {
     for end in [None, Some(Command::Stop), Some(Command::Disarm)] {
