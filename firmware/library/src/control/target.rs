@@ -293,7 +293,7 @@ fn holds<T: Scalar>(
 }
 
 /// The pretension of tensions that the bounds do not allow, N: the lowest at which no tendon pulls by less than the minimum, or as much of it as three quarters of
-/// the last newtons below the maximum allow. Not a number where a tension is none.
+/// the last newtons below the maximum allow.
 #[cold]
 fn last_newtons<T: Scalar>(mechanism: &Mechanism<T>, distribution: &Distribution<T, 3>) -> T {
     let lowest_n = distribution.pretension_min;
