@@ -255,7 +255,8 @@ impl<T: Scalar> Active<T> {
     /// Whether it was armed just now with tendons that pulled already, one of which is below the minimum tension since.
     #[inline(always)]
     pub fn begins_taut(&self) -> bool {
-        self.slack.taken_up() && self.slack.cycles <= u32::from(SETTLE_CYCLES)
+        let taut = self.slack.taken_up() || self.unloaded.is_some();
+        taut && self.slack.cycles <= u32::from(SETTLE_CYCLES)
     }
 
     /// Whether the tendons take too long to become taut.

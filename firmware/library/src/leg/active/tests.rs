@@ -124,6 +124,21 @@ fn a_leg_begins_taut_while_its_sensors_settle() {
     }
 }
 
+/// Nor is it slack while it searches where it begins without its load.
+#[test]
+fn a_leg_whose_load_is_left_out_begins_taut_too() {
+    for (part, taut) in [(0.9, true), (0.0, false)] {
+        let (_, mut shared, f_min_n) = armed(part);
+        shared.compensation = Compensation::Off;
+        let mut active = Active::begin(&mut shared, &measured([part * f_min_n; 3]));
+        assert_eq!(active.unloaded.is_some(), taut);
+        assert_eq!(active.begins_taut(), taut);
+        active.unloaded = None;
+        active.slack.left_m = taut.then_some(0.0);
+        assert_eq!(active.begins_taut(), taut);
+    }
+}
+
 /// A leg rests without a target from when there is none until there is one, it is sent anywhere, or it is led down to be disarmed.
 #[test]
 fn a_leg_rests_without_a_target_until_it_has_one_or_is_sent() {
