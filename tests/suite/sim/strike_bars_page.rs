@@ -38,9 +38,16 @@ fn widest(defect: Defect, activity: Activity) -> [String; 3] {
     };
     // Where the one has none, the other's: it is named where it shows.
     let named = near.named_s.or(far.named_s);
+    let by_itself = if far.cut_off {
+        " *"
+    } else if near.cut_off {
+        " **"
+    } else {
+        ""
+    };
     [
-        tension,
-        format!("{}", near.tip_mm.max(far.tip_mm)),
+        tension + by_itself,
+        format!("{}{by_itself}", near.tip_mm.max(far.tip_mm)),
         named.map_or_else(|| "none".into(), |time_s| format!("{time_s}")),
     ]
 }

@@ -13,11 +13,6 @@ use serde::Serialize;
 /// How far the leg may go beyond its maximum tension, as a part of it.
 const BEYOND: f64 = 0.1;
 
-/// The same where a moving leg is cut off: its motors stop at once, and it swings on with up to 2 kg, which adds the weight that it
-/// held back once more; and where a cell that is wrong comes to show the maximum tension on the way, which stops its motor as fast. One that is
-/// beyond it may do what it does by itself, and a tenth more: see `cut_off.rs`.
-const CUT_OFF_BEYOND: f64 = 0.4;
-
 /// The same where a tendon of a moving leg is cut: it swings away, and one of the other two catches it as it comes back. Each of these has
 /// stored up to 0.10 J, at 150 N on the curve of the paper's tendon; at 0.8 rad/s 2 kg at 0.19 m have 0.02 J. Where one tendon takes up
 /// all of that, it is at 297 N. Nothing is driven by then: the brake has ended, and a cell without its bridge's supply shows the same.
@@ -29,9 +24,6 @@ const CUT_BEYOND: f64 = 1.0;
 /// true tension is a tenth above the maximum, or a tendon is slack: that swing goes on, whatever the motors do. How far it has grown by then
 /// depends on pose, load and moment, and no calculation bounds it closely: this is the highest that is known, 327 N, and 3 % more.
 const SWAPPED_BEYOND: f64 = 1.25;
-
-/// The same where half of a bridge is open: the other half still brakes.
-const HALF_OPEN_BEYOND: f64 = 0.25;
 
 /// The same where the play of a gear is 1 rad of its screw at once while its motor pays out: the tendon stands for 0.16 mm, at 179 N/mm, the
 /// stiffness of the paper's tendon at 150 N, while the others move the leg on.
@@ -60,9 +52,12 @@ const SLIP_BEYOND: f64 = 3.0;
 /// it comes to rest. 165.0 N are known, of 135.5 N without the stop (`--seed 271128`, #10784).
 const LEFT_OUT_BEYOND: f64 = 0.15;
 
-/// The same where a cell shows the maximum tension on a leg at rest, which gives way by it until another tendon is slack, and swings: 165.6 N
+/// The same where a cell shows the maximum tension, so that its motor gives way by it until another tendon is slack, and the leg swings: 165.6 N
 /// are known (`--seed 777`, #8833).
 const AT_MAX_BEYOND: f64 = 0.15;
+
+/// The same on the way, which the other motors go on with until the cell is found wrong: 176.3 N are known (`--seed 903`, #1447).
+const AT_MAX_WAY_BEYOND: f64 = 0.2;
 
 /// The highest tension while homing, N; and where a driver gives the whole supply then, for the 10 ms until its motor is told to run away.
 const HOMING_N: f64 = 25.0;
@@ -93,12 +88,6 @@ const GAIN_AT_MAX_MM: f64 = 7.0;
 /// for the time until a counter contradicts.
 const SWAPPED_MM: f64 = 20.0;
 
-/// How far a moving leg may swing off its way that is cut off with its payload, mm: or as far as it does by itself.
-const CUT_OFF_MM: f64 = 6.0;
-
-/// The same where a motor jams, mm: the other two go on for 35 ms, until it is told, at up to 160 mm/s at the tip, and brake.
-const JAMMED_MM: f64 = 9.0;
-
 /// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, mm: by what its motor can pull
 /// below the current at which homing ends, about 20 N, which holds the leg's own weight far aside.
 const LIFTED_MM: f64 = 90.0;
@@ -113,6 +102,10 @@ const ASIDE_MM: f64 = 10.0;
 /// swings, mm.
 const CUT_MM: f64 = 250.0;
 const SLIP_MM: f64 = 80.0;
+
+/// The same where the leg is armed again with it, mm: its zero is wrong by these 5 mm, so that it is led down by the 46 mm once more; near 30°
+/// the tendons' levers are up to a fifth shorter. 92.7 mm are known (`--seed 281128`, #1911).
+const SLIP_AGAIN_MM: f64 = 110.0;
 
 /// The same where a tendon grows longer unseen, by 0.1 mm or 0.9 mm of the tip in a second, mm.
 const CREEP_MM: f64 = 4.0;
@@ -141,6 +134,8 @@ pub struct StrikeBars {
     /// Whether the tip may sag once a tension that truly is beyond its bar has the leg ramp down: with two cells that changed their
     /// places it swings ever more, and its tendons have to be paid out.
     pub sags: bool,
+    /// Whether no firmware can brake the leg, so that it is judged by what it does by itself where that is more: see `cut_off.rs`.
+    pub cut_off: bool,
 }
 
 impl StrikeBars {
@@ -164,12 +159,17 @@ impl StrikeBars {
         f_max_n: f64,
         before: &Unstruck,
     ) -> Self {
-        let at_max = defect.is_some_and(|defect| shows_maximum(defect, f_max_n, before.highest_n));
-        let (stopped_part, paid_out_mm) = match (at_max, activity.is_on_the_way()) {
-            (true, true) => (CUT_OFF_BEYOND, GAIN_AT_MAX_MM),
+        let on_the_way = activity.is_on_the_way();
+        let at_max = defect.is_some_and(|defect| {
+            let found = matches!(defect, Defect::CellGainStep(_)) && !on_the_way;
+            !found && shows_maximum(defect, f_max_n, before.highest_n)
+        });
+        let (stopped_part, paid_out_mm) = match (at_max, on_the_way) {
+            (true, true) => (AT_MAX_WAY_BEYOND, GAIN_AT_MAX_MM),
             (true, false) => (AT_MAX_BEYOND, GAIN_AT_MAX_MM),
             (false, _) => (0.0, 0.0),
         };
+        let cuts_off = defect.is_some_and(|defect| cuts_off(defect) && !is_slow(defect, activity));
         Self {
             tension_n: f_max_n * (1.0 + excess_part(defect, activity).max(stopped_part)),
             homing_n: if matches!(defect, Some(Defect::DriverFullOn(_))) {
@@ -180,6 +180,7 @@ impl StrikeBars {
             tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
             sags: defect == Some(Defect::CellsSwapped),
+            cut_off: on_the_way && (at_max || cuts_off),
         }
     }
 
@@ -189,11 +190,6 @@ impl StrikeBars {
             tension_n: self.tension_n.max(f_max_n * (1.0 + LEFT_OUT_BEYOND)),
             ..self
         }
-    }
-
-    /// Whether a strike by a defect is judged by a leg whose motors stop at once where that does more than these bars allow.
-    pub(super) const fn is_judged_by_cut_off(defect: Defect, activity: Activity) -> bool {
-        activity.is_on_the_way() && cuts_off(defect) && !is_slow(defect, activity)
     }
 }
 
@@ -211,7 +207,7 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
                 Activity::Homing | Activity::Held | Activity::Disarmed
             ) =>
         {
-            CUT_OFF_BEYOND
+            BEYOND
         }
         Some(Defect::CellsSwapped) => SWAPPED_BEYOND,
         Some(Defect::TendonCut(_))
@@ -219,10 +215,7 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
         {
             CUT_BEYOND
         }
-        Some(defect) if is_slow(defect, activity) => BEYOND,
         Some(Defect::GearPlay(_)) if activity.is_on_the_way() => PLAY_BEYOND,
-        Some(Defect::HalfBridgeOpen(_)) if activity.is_on_the_way() => HALF_OPEN_BEYOND,
-        Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
         _ => BEYOND,
     }
 }
@@ -294,7 +287,7 @@ const fn is_found_at_once(defect: Defect) -> bool {
 /// Whether a cell that is wrong comes to show the maximum tension.
 fn shows_maximum(defect: Defect, f_max_n: f64, highest_n: [f64; 3]) -> bool {
     let shows_n = match defect {
-        Defect::CellGainDrift(i) => 1.2 * highest_n[i],
+        Defect::CellGainStep(i) | Defect::CellGainDrift(i) => 1.2 * highest_n[i],
         // 5 N in a second, for the time in which it is to be named.
         Defect::CellDrifting(i) => highest_n[i] + 5.0 * DRIFTS_S,
         Defect::CellOffsetStep(i) => highest_n[i] + 10.0,
@@ -322,6 +315,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
     };
     let least_mm = match defect {
         Some(Defect::TendonCut(_)) => CUT_MM,
+        Some(Defect::TendonSlips(_)) if activity == Activity::Rearmed => SLIP_AGAIN_MM,
         Some(Defect::TendonSlips(_)) => SLIP_MM,
         Some(Defect::TendonCreeps(_)) => CREEP_MM,
         Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_MM,
@@ -332,15 +326,11 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::CellsSwapped | Defect::EncodersSwapped | Defect::EncoderReversed(_)) => {
             SWAPPED_MM
         }
-        Some(Defect::CurrentZero(_)) => usual_mm,
-        Some(defect) if is_slow(defect, activity) => usual_mm,
         Some(Defect::CellWanders(_))
             if matches!(activity, Activity::Following | Activity::Held) =>
         {
             usual_mm
         }
-        Some(Defect::MotorJammed(_)) if activity == Activity::Moving => JAMMED_MM,
-        Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_MM,
         Some(
             Defect::CellGainStep(_)
             | Defect::CellGainStepDown(_)

@@ -7,8 +7,12 @@ use leg_sim::plant::Defect;
 /// How long it is watched, s: two periods of a first mode of 2 Hz, that of a heavy leg at a low pretension, whose swing only decays.
 const WATCHED_S: f64 = 1.0;
 
-/// What a struck leg may do more than that, as a part of it: its motors stop some ticks later, or turn on a little.
-const MORE: f64 = 0.1;
+/// What a struck leg may do more than that, as a part of it, and off its way, mm: its motors stop some ticks later, or turn on a little.
+pub(super) const MORE: f64 = 0.1;
+pub(super) const MORE_MM: f64 = 0.5;
+
+/// For how long a driver turns its motor in one direction alone, s: until its counter contradicts.
+const CONTRADICTED_S: f64 = 0.01;
 
 /// How far a leg goes by itself that is cut off where another is struck: by its speed, its payload and the stretch of its tendons, which
 /// no firmware brakes any more.
@@ -21,16 +25,21 @@ pub(super) struct CutOff {
 }
 
 impl CutOff {
-    /// Of a leg whose drivers are switched off by their fault line.
+    /// Of a leg whose drivers are switched off by their fault line, where one is struck by a defect. A motor that stops by itself does so here, too.
     ///
     /// # Errors
     /// As the simulation.
-    pub fn new(prepared: &PreparedLeg) -> Result<Self, String> {
+    pub fn new(prepared: &PreparedLeg, defect: Defect) -> Result<Self, String> {
         let mut stand = prepared.stand.clone();
-        stand.plant().set_defect(Defect::DriverFault(0), true);
-        let end_s = stand.time_s() + WATCHED_S;
+        let struck_s = stand.time_s();
+        let (moves, cut_off_s) = stops_by_itself(defect);
+        if let Some(moves) = moves {
+            stand.plant().set_defect(moves, true);
+        }
         let mut found = Self::default();
-        while stand.time_s() < end_s {
+        while stand.time_s() < struck_s + WATCHED_S {
+            let off = stand.time_s() >= struck_s + cut_off_s;
+            stand.plant().set_defect(Defect::DriverFault(0), off);
             stand.tick()?;
             let tensions_n = stand.truth.tensions_n;
             found.tension_n = tensions_n.into_iter().fold(found.tension_n, f64::max);
@@ -45,8 +54,25 @@ impl CutOff {
         let part = 1.0 + MORE;
         StrikeBars {
             tension_n: bars.tension_n.max(part * self.tension_n),
-            tip_mm: bars.tip_mm.max(part * self.tip_mm),
+            tip_mm: bars.tip_mm.max(part * self.tip_mm + MORE_MM),
             ..bars
         }
+    }
+}
+
+/// What a motor does that no firmware can change, and when the drivers are switched off then, s.
+const fn stops_by_itself(defect: Defect) -> (Option<Defect>, f64) {
+    match defect {
+        Defect::MotorJammed(_) => (Some(defect), 0.0),
+        Defect::DirectionStuck(_) | Defect::HalfBridgeOpenOutwards(_) => {
+            (Some(defect), CONTRADICTED_S)
+        }
+        // A motor whose tendon seems to be at the maximum tension is stopped.
+        Defect::CellGainStep(i)
+        | Defect::CellGainDrift(i)
+        | Defect::CellDrifting(i)
+        | Defect::CellOffsetStep(i)
+        | Defect::CellWanders(i) => (Some(Defect::MotorJammed(i)), 0.0),
+        _ => (None, 0.0),
     }
 }

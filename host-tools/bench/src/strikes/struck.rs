@@ -113,12 +113,10 @@ impl Struck {
         bars: StrikeBars,
     ) -> StrikeBars {
         let within = self.tension_n <= bars.tension_n && self.tip_mm <= bars.tip_mm;
-        let cut_off =
-            defect.is_some_and(|defect| StrikeBars::is_judged_by_cut_off(defect, self.state));
-        if within || !cut_off {
+        let Some(defect) = defect.filter(|_| bars.cut_off && !within) else {
             return bars;
-        }
-        match CutOff::new(prepared) {
+        };
+        match CutOff::new(prepared, defect) {
             Ok(cut_off) => cut_off.widened(bars),
             Err(error) => {
                 self.failures.push(error);

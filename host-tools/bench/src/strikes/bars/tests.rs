@@ -1,6 +1,7 @@
 //! The pages say the bars.
 
 use super::*;
+use crate::strikes::cut_off::{MORE, MORE_MM};
 use crate::strikes::naming::{NAMED_S, WANDERS_S};
 
 #[test]
@@ -8,11 +9,6 @@ fn the_page_says_the_bars() {
     let page = include_str!("../../../../docs/scenarios.md");
     for words in [
         format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
-        format!("{:.0} % where a moving leg", 100.0 * CUT_OFF_BEYOND),
-        format!(
-            "{:.0} % where half of a bridge is open",
-            100.0 * HALF_OPEN_BEYOND
-        ),
         format!("{:.0} % where a tendon of a moving leg", 100.0 * CUT_BEYOND),
         format!("{:.0} % where two load cells", 100.0 * SWAPPED_BEYOND),
         format!(
@@ -24,23 +20,26 @@ fn the_page_says_the_bars() {
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
         format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
         format!(
-            "{:.0} % where a moving leg leaves its load out, or one at rest",
-            100.0 * LEFT_OUT_BEYOND.max(AT_MAX_BEYOND)
+            "{:.0} % where a moving leg leaves its load out, or one at rest gives way by a cell that comes to show the maximum tension, {:.0} % on its way",
+            100.0 * LEFT_OUT_BEYOND.max(AT_MAX_BEYOND),
+            100.0 * AT_MAX_WAY_BEYOND
         ),
         format!("{HOMING_N} N while homing"),
         format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
         format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
         format!("{GAIN_DOWN_MM} mm where it drifts down by that"),
         format!(
-            "{GAIN_AT_MAX_MM} mm where a cell that grows, steps by 10 N or wanders comes to show the maximum tension"
+            "{GAIN_AT_MAX_MM} mm where a cell that grows, steps by 10 N, drifts or wanders comes to show the maximum tension"
         ),
-        format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
         format!("{SWAPPED_MM} mm where two sensors"),
+        format!("{:.0} % and {MORE_MM} mm in tip", 100.0 * MORE),
         format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
         format!("{HOMING_STOPS_MM} mm where the supply dips then"),
-        format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
+        format!(
+            "{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips, {SLIP_AGAIN_MM} mm where it is armed again with it"
+        ),
         format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
-        format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
+        format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with that"),
         format!(
             "{UNCOUNTED_MM} mm where a motor turns without being counted, {UNCOUNTED_WAY_MM} mm in a move"
         ),
@@ -60,10 +59,7 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
     let page = page.join(" ");
     let percent = |part: f64| format!("{:.0} %", 100.0 * part);
     for words in [
-        format!(
-            "cut off from full speed: up to {} more",
-            percent(CUT_OFF_BEYOND)
-        ),
+        format!("no more than {} above what its speed", percent(MORE)),
         format!("catch it: up to {} more", percent(CUT_BEYOND)),
         format!("by it: up to {} above the maximum", percent(SWAPPED_BEYOND)),
         format!(
@@ -88,16 +84,9 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
         format!("switches it off (tip {RUNAWAY_MM} mm)"),
         format!("armed again with it ({RUNAWAY_AGAIN_MM} mm)"),
         format!(
-            "so that its motor stops: up to {} more",
-            percent(CUT_OFF_BEYOND)
-        ),
-        format!(
-            "a leg at rest gives way by such a cell: up to {} more",
-            percent(AT_MAX_BEYOND)
-        ),
-        format!(
-            "a current sensor that shows nothing, on a leg that moves: up to {} more",
-            percent(CUT_OFF_BEYOND)
+            "a load cell that comes to show the maximum tension: up to {} more, {} on its way",
+            percent(AT_MAX_BEYOND),
+            percent(AT_MAX_WAY_BEYOND)
         ),
         format!(
             "leaves its load out: up to {} more",
