@@ -66,6 +66,37 @@ mod tests {
         }
     }
 
+    /// The lengths of what is on and off by turns, as long as a pattern goes, steps; it begins with what is on, which may have none.
+    fn lengths(state: State, faulted: bool) -> Vec<usize> {
+        let pattern = pattern(state, faulted);
+        let first_off = if pattern[0] { vec![] } else { vec![0] };
+        let parts = pattern.chunk_by(|a, b| a == b).map(<[bool]>::len);
+        first_off.into_iter().chain(parts).collect()
+    }
+
+    /// A flash and a gap are one step each. A latched fault shows in a leg that is disarmed alone.
+    #[test]
+    fn a_pattern_is_the_one_of_the_table() {
+        let by_turns = |steps: usize| vec![steps; STEPS as usize / steps];
+        for (state, faulted, expected) in [
+            (State::Boot, false, vec![20]),
+            (State::Disarmed, false, vec![1, 19]),
+            (State::Disarmed, true, vec![1, 1, 1, 1, 1, 15]),
+            (State::Homing, false, by_turns(2)),
+            (State::Active, false, vec![0, 1, 19]),
+            (State::KeepingStation, false, vec![0, 1, 1, 1, 17]),
+            (State::Held, false, by_turns(10)),
+            (State::RampingDown, false, vec![1, 1, 1, 17]),
+            (State::Off, false, by_turns(1)),
+            (State::Jogging, false, vec![0, 1, 1, 1, 1, 1, 15]),
+        ] {
+            assert_eq!(lengths(state, faulted), expected, "{state:?} {faulted}");
+            if state != State::Disarmed {
+                assert_eq!(pattern(state, true), pattern(state, false));
+            }
+        }
+    }
+
     #[test]
     fn it_repeats() {
         for step in 0..STEPS {

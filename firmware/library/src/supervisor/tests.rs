@@ -83,6 +83,27 @@ fn a_reaction_only_ever_takes_authority_away() {
     }
 }
 
+/// What a fault leads to in each state in which a motor may turn: where nothing stands, the state stays.
+#[test]
+fn each_state_obeys_each_reaction() {
+    use State::{Active, Boot, Disarmed, Held, Homing, KeepingStation, Off, RampingDown};
+    for (state, hold, ramp_down, gate_off) in [
+        (Boot, None, None, Some(Off)),
+        (Disarmed, None, None, Some(Off)),
+        (Homing, Some(Held), Some(RampingDown), Some(Off)),
+        (Active, Some(Held), Some(RampingDown), Some(Off)),
+        (KeepingStation, Some(Held), Some(RampingDown), Some(Off)),
+        (Held, None, Some(RampingDown), Some(Off)),
+        (RampingDown, None, None, Some(Off)),
+        (Off, None, None, None),
+    ] {
+        for (reaction, after) in REACTIONS.into_iter().zip([None, hold, ramp_down, gate_off]) {
+            let next = state.next(Event::Reaction(reaction));
+            assert_eq!(next, after, "{state:?} {reaction:?}");
+        }
+    }
+}
+
 #[test]
 fn whatever_stops_a_leg_switches_a_motor_that_turns_alone_off() {
     for reaction in REACTIONS {

@@ -98,6 +98,26 @@ fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
     }
 }
 
+/// A counter whose encoder has lost one of its two tracks goes to and fro by a count: its motor turns, and draws too little for one that stands.
+#[test]
+fn a_motor_whose_counter_goes_to_and_fro_is_found() {
+    let friction_a = 2.0 * f64::from(Settings::table_1().unwrap().servos[0].friction_a);
+    let most = 2 * cycles(limits().disagreement_time_s);
+    for sign in [1.0, -1.0] {
+        for count in [1, -1] {
+            let mut watched = Watched::new();
+            let found = (1..=most).find_map(|cycle| {
+                let mut seen = Seen::sound();
+                let to_and_fro = if cycle % 2 == 0 { count } else { -count };
+                drives(sign * (friction_a + 0.05), to_and_fro)(&watched.limits(), &mut seen);
+                let faults = watched.cycle(&seen);
+                faults.any().then_some(faults)
+            });
+            assert_eq!(found, Some(FaultSet::single(Fault::CurrentDisagrees)));
+        }
+    }
+}
+
 /// What the speed induces drives no current, and is known to a tenth.
 #[test]
 fn the_voltage_that_a_speed_induces_needs_no_current() {
