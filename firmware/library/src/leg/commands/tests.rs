@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::command::{Command, CommandRefusal, Compensation};
-use crate::control::Measured;
+use crate::control::{LengthError, Measured};
 use crate::leg::Leg;
 use crate::leg::active::Active;
 use crate::leg::mode::Mode;
 use crate::set_point::{SetPoint, StreamPart};
 use crate::settings::Settings;
-use crate::supervisor::State;
+use crate::supervisor::{ErrorGrowth, SETTLE_CYCLES, State};
 use core::f64::consts::TAU;
 use leg_model::{Direction, Scalar};
 
@@ -59,6 +59,30 @@ fn a_leg_that_keeps_station_is_not_led() {
     }
     let active = leg.mode.active().unwrap();
     assert!(!active.trajectory.moving() && active.commanded.is_none());
+}
+
+/// It is left to itself where its sensors agree at this moment, which they do again before they are a fault.
+#[test]
+fn a_leg_whose_sensors_disagree_is_held_in_place_of_keeping_station() {
+    for (agrees, state) in [(true, State::KeepingStation), (false, State::Held)] {
+        let mut leg = armed();
+        if let Mode::Active(active) = &mut leg.mode {
+            active.tensioned = true;
+        }
+        let error = LengthError {
+            mean_m: 0.0,
+            elongations_m: [1e-3; 3],
+        };
+        for _ in 0..=SETTLE_CYCLES {
+            leg.agreement.watch(&error, &ErrorGrowth::RESTING);
+        }
+        if !agrees {
+            leg.agreement.pause();
+        }
+        assert!(leg.agreement.watches() && leg.agreement.trusts() == agrees);
+        assert_eq!(leg.execute(Command::KeepStation, &MEASURED), Ok(()));
+        assert_eq!(leg.mode.state(), state);
+    }
 }
 
 #[test]
