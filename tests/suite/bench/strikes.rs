@@ -320,6 +320,21 @@ fn a_leg_that_is_cut_off_does_no_more_than_it_does_by_itself() {
     }
 }
 
+/// Strikes by motors that obey or are counted in parts, the farthest that are known.
+#[test]
+fn a_motor_that_obeys_in_parts_leads_the_leg_a_little_off_its_way() {
+    require_within(
+        271_129,
+        &[
+            (10_284, "encoder_lost", 1.5),
+            (16_298, "encoder_slipping", 5.0),
+            (13_609, "half_bridge_open", 4.0),
+            (17_318, "half_bridge_open", 4.0),
+            (13_606, "motor_intermittent", 2.0),
+        ],
+    );
+}
+
 /// Strikes that failed once, beyond bars that no firmware could have kept.
 #[test]
 fn what_cannot_be_braked_or_told_stays_within_its_bar() {

@@ -11,11 +11,11 @@ fn the_page_says_the_bars() {
         format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
         format!("{:.0} % where a tendon of a moving leg", 100.0 * CUT_BEYOND),
         format!("{:.0} % where two load cells", 100.0 * SWAPPED_BEYOND),
-        format!(
-            "{:.0} % where the play of a gear grows on the way",
-            100.0 * PLAY_BEYOND
-        ),
         format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
+        format!(
+            "{:.0} % where the play of a gear grows on the way, or a motor obeys or is counted in parts there",
+            100.0 * PLAY_BEYOND.max(IN_PARTS_BEYOND)
+        ),
         format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
         format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
@@ -41,7 +41,7 @@ fn the_page_says_the_bars() {
         format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
         format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with that"),
         format!(
-            "{UNCOUNTED_MM} mm where a motor turns without being counted, {UNCOUNTED_WAY_MM} mm in a move"
+            "{UNCOUNTED_MM} mm where a motor turns without being counted, {IN_PARTS_MM} mm on the way where one obeys or is counted in parts"
         ),
         format!("{GRASPED_MM} mm where a hand holds the tip"),
         format!(
@@ -74,7 +74,10 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             "catches the falling leg: up to {} more",
             percent(SLIP_BEYOND)
         ),
-        format!("on the way: up to {} more", percent(PLAY_BEYOND)),
+        format!(
+            "obeys or is counted in parts there: up to {} more",
+            percent(PLAY_BEYOND.max(IN_PARTS_BEYOND))
+        ),
         format!(
             "up to {} and {} more",
             percent(STUCK_BEYOND),
