@@ -12,6 +12,7 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::tune::{OperatorTuneError, measure_motor, measure_swing, supply_v};
+use leg_rig::actuator::Actuator;
 use leg_rig::control_settings;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
@@ -32,19 +33,19 @@ const OFF: Drive<f32> = Drive {
 };
 
 /// A leg that is not as configured: friction within a half of it, resistance and torque constant within a fifth, play from the half
-/// to the double, tendons and inertia so that it swings at another frequency.
+/// to the double, each motor otherwise; tendons and inertia so that it swings at another frequency.
 fn drawn(configured: &RigFile, seed: u64) -> RigFile {
     let mut rng = Rng::with_seed(seed);
     let mut part = |low: f64, high: f64| low + (high - low) * rng.f64();
     let mut real = *configured;
-    let [actuator, ..] = &mut real.actuators;
-    actuator.friction_nm *= part(0.5, 1.5);
-    actuator.resistance_ohm *= part(0.8, 1.2);
-    actuator.torque_constant_nm_per_a *= part(0.8, 1.2);
-    actuator.viscous_nm_s_per_rad *= part(0.5, 1.5);
-    actuator.screw_efficiency *= part(0.9, 1.1);
-    actuator.backlash_rad *= part(0.5, 2.0);
-    real.actuators = [*actuator; 3];
+    for actuator in &mut real.actuators {
+        actuator.friction_nm *= part(0.5, 1.5);
+        actuator.resistance_ohm *= part(0.8, 1.2);
+        actuator.torque_constant_nm_per_a *= part(0.8, 1.2);
+        actuator.viscous_nm_s_per_rad *= part(0.5, 1.5);
+        actuator.screw_efficiency *= part(0.9, 1.1);
+        actuator.backlash_rad *= part(0.5, 2.0);
+    }
     real.plant.curve_error = part(-0.03, 0.03);
     let inertia = configured
         .plant
@@ -154,12 +155,23 @@ fn true_frequency_hz(real: &RigFile, pretension_n: f64) -> f64 {
     10.0 / (passes[10] - passes[0])
 }
 
+/// The pretension moves all motors together: it tells the mean of their plays.
+fn mean_play_m(rig: &RigFile) -> f64 {
+    rig.actuators.iter().map(Actuator::play_m).sum::<f64>() / 3.0
+}
+
 #[test]
 fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
     let mut changed = 0.0_f64;
     for seed in 1..=7 {
         let configured = ready_rig(seed);
-        let real = drawn(&configured, seed);
+        let mut real = drawn(&configured, seed);
+        // Motors that differ by more than their play let no leg home before its rig file says so.
+        let [first, _, _] = real.actuators;
+        for (actuator, part) in real.actuators.iter_mut().zip([1.0, 0.7, 1.2]) {
+            *actuator = first;
+            actuator.backlash_rad *= part;
+        }
         let (line, mut operator, _) = leg(&configured, &real, seed);
         let plan = SwingPlan::new(&configured);
         let mut leaned_deg = 0.0_f64;
@@ -181,7 +193,7 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
         }
         let travels = swings.travels.unwrap();
         let play_m = travels.play_m;
-        let real_m = real.actuators[0].play_m();
+        let real_m = mean_play_m(&real);
         println!("play {play_m:?}, true {real_m}");
         assert!((play_m.value / real_m - 1.0).abs() < 0.1, "seed {seed}");
         let stretched = travels.stretch_m.value / swings.configured_stretch_m.unwrap();
@@ -226,7 +238,7 @@ fn what_is_written_is_a_part_of_a_rig_file() {
         ),
         (written.friction_nm, real.actuators[1].friction_nm),
         (written.screw_efficiency, real.actuators[1].screw_efficiency),
-        (written.backlash_rad, real.actuators[1].backlash_rad),
+        (written.play_m(), mean_play_m(&real)),
         (inertia(&file), inertia(&real)),
     ] {
         assert!((written / real - 1.0).abs() < 0.05, "{written} {real}");
