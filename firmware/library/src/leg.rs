@@ -247,7 +247,10 @@ impl<T: Scalar> Leg<T> {
         faults.add(Fault::Residual, first && !self.agreement.agree());
         if self.phase.monitors_cells() {
             let contradicted = self.agreement.contradicts();
-            self.monitors.watch_cells(&input, contradicted);
+            // A leg that is held is at rest: nothing but a load changes its tensions.
+            let close = state != State::Held || self.agreement.is_close();
+            self.monitors
+                .watch_cells(&input, contradicted, input.cells_trusted && close);
         }
         if let Some(turn) = self.phase.monitored_motor()
             && let (Some(axis), Some(&pulled)) =

@@ -28,6 +28,9 @@ use std::ops::Range;
 /// Time in which the leg finds what it carries, s.
 const FIND_S: f64 = 1.5;
 
+/// The loop of the trim has no gain margin: its phase is within this of 0°.
+const TRIM_PHASE_DEG: f64 = 170.0;
+
 /// Which states are measured.
 #[derive(Clone, Debug)]
 pub struct BodeCampaign {
@@ -61,15 +64,30 @@ pub struct Swept {
 }
 
 impl Swept {
-    /// Whether both margins are above their bars.
+    /// Whether both margins are above their bars, but for one that the loop has not: see [`Self::has_no`].
     #[must_use]
     pub fn passes(&self) -> bool {
-        let enough = |margin: Margin| {
-            margin
-                .value_and_hz(self)
-                .is_none_or(|[value, _]| value >= margin.bar())
+        let enough = |margin: Margin| match margin.value_and_hz(self) {
+            Some([value, _]) => value >= margin.bar(),
+            None => self.has_no(margin),
         };
         self.failure.is_none() && Margin::ALL.into_iter().all(enough)
+    }
+
+    /// Whether this loop has no such margin: the phase of the trim does not come to ±180°, and the gain of damping and tension may stay
+    /// below 1. Of every other loop a margin that is not found lies outside of what was measured.
+    #[must_use]
+    pub fn has_no(&self, margin: Margin) -> bool {
+        let mut points = self.points.iter();
+        match (self.feedback, margin) {
+            (Feedback::Trim, Margin::Gain) => {
+                points.all(|point| point.phase_deg.abs() < TRIM_PHASE_DEG)
+            }
+            (Feedback::Damping | Feedback::Tension, Margin::Phase) => {
+                points.all(|point| point.gain_db < 0.0)
+            }
+            _ => false,
+        }
     }
 }
 

@@ -134,7 +134,9 @@ fn a_leg_whose_motors_differ_moves_within_the_bars() {
         rigs: vec![("own motors".into(), file)],
         payload_kg: None,
     };
-    for moved in campaign.run(0..14, || ()) {
+    let made = campaign.run(0..14, || ());
+    assert_eq!(made.len(), 14);
+    for moved in made {
         println!("{:.3} mm off, {:.3} mm swing", moved.off_mm, moved.swing_mm);
         assert!(moved.passes(), "{moved:?}");
     }

@@ -133,7 +133,8 @@ fn failures(name: &str, circle: &Circle<'_>, times: f64) -> Vec<String> {
             circle.payload_kg
         );
         println!("{what}");
-        (off_mm > times * OFF_MM || lag_ms > times * LAG_MS).then_some(what)
+        let within = off_mm <= times * OFF_MM && lag_ms <= times * LAG_MS;
+        (!within).then_some(what)
     };
     let pretensions_n = circle.pretensions_n().into_iter();
     pretensions_n.filter_map(followed).collect()

@@ -31,8 +31,8 @@ pub struct MonitorInput<'a, T> {
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.
     pub residual_m: Option<T>,
-    /// Whether a tension is called too much by its cell alone: lengths and tensions are watched and agree; and while homing, where
-    /// nothing compares them and the tendons are paid out anyway.
+    /// Whether lengths and tensions are watched and agree; and while homing, where nothing compares them and the tendons are paid out
+    /// anyway.
     pub cells_trusted: bool,
 }
 
@@ -67,10 +67,16 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// Checks the load cells, once a cycle; `contradicted`: while lengths and tensions disagree.
+    /// Checks the load cells, once a cycle; `contradicted`: while lengths and tensions disagree; `excess_trusted`: whether a tension is called too
+    /// much by its cell alone.
     // One after the other without a loop: there is little time left in their tick.
     #[inline(never)]
-    pub fn watch_cells(&mut self, view: &MonitorInput<'_, T>, contradicted: bool) {
+    pub fn watch_cells(
+        &mut self,
+        view: &MonitorInput<'_, T>,
+        contradicted: bool,
+        excess_trusted: bool,
+    ) {
         let [alone_n, contradicted_n] = self.jump_n;
         let jump_n = if contradicted {
             contradicted_n
@@ -80,11 +86,11 @@ impl<T: Scalar> Monitors<T> {
         let [first, second, third] = &mut self.axes;
         let [a, b, c] = &mut self.axis_faults;
         *a = a.difference(FaultSet::OF_CELLS);
-        first.watch_cell(0, view, jump_n, a);
+        first.watch_cell(0, view, jump_n, excess_trusted, a);
         *b = b.difference(FaultSet::OF_CELLS);
-        second.watch_cell(1, view, jump_n, b);
+        second.watch_cell(1, view, jump_n, excess_trusted, b);
         *c = c.difference(FaultSet::OF_CELLS);
-        third.watch_cell(2, view, jump_n, c);
+        third.watch_cell(2, view, jump_n, excess_trusted, c);
     }
 
     /// Checks the motor of an axis, from 0 to 2, and its encoder; each has its turn once a cycle.

@@ -7,10 +7,11 @@ use leg_sim::plant::Defect;
 pub(super) const NAMED_S: f64 = 0.5;
 
 /// The same of a cell that wanders, while it is off by so many N, and of one that drifts, s. As a random walk it comes back to its tension
-/// again and again, and shows nothing then; while a leg arms or moves, less is compared.
+/// again and again, and shows nothing then; while a leg arms or moves, less is compared. A leg that keeps station follows one that drifts, and what its
+/// other tendons change by then is allowed for the curves of all: 7.41 s are known (`--seed 281129`, #4615).
 pub(super) const WANDERS_BY_N: f64 = 12.0;
 pub(super) const WANDERS_S: f64 = 1.5;
-pub(super) const DRIFTS_S: f64 = 7.0;
+pub(super) const DRIFTS_S: f64 = 8.0;
 
 /// By how much a cell wanders until it is named, as one deviation, N: 20 N by the root of 2 s, for it is off for a part of the time alone.
 pub(super) const WANDERED_N: f64 = 28.3;

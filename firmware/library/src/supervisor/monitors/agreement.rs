@@ -79,6 +79,9 @@ pub const SETTLE_CYCLES: u16 = 200;
 const HARD_SWING_M: f32 = 4e-5;
 const DOUBT_TIME_S: f32 = 0.5;
 
+/// Part of the allowed change within which a held leg is that a load pulls: with cells and curves that are 2 % off, it changes by a twentieth.
+const CLOSE_PART: f32 = 0.25;
+
 /// Cycles after which nothing of it is left, 5 s.
 const FADE_CYCLES: u16 = 10_000;
 
@@ -90,6 +93,8 @@ pub struct Agreement<T> {
     beyond: LowPass<T>,
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
+    /// Whether the change is now within a part of what is allowed: see [`Self::is_close`].
+    close: bool,
     change_max_m: T,
 }
 
@@ -111,6 +116,7 @@ impl<T: Scalar> Agreement<T> {
             reference: None,
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
+            close: false,
             change_max_m: settings.limits.residual_change_m.into(),
         }
     }
@@ -154,6 +160,13 @@ impl<T: Scalar> Agreement<T> {
         self.watches() && self.beyond_now_m <= T::zero()
     }
 
+    /// Whether the change was within a quarter of what is allowed when the sensors were watched last: that of a leg at rest whose load changes
+    /// is, and that of one whose load cell has come to show the maximum tension by itself is not.
+    #[inline(always)]
+    pub fn is_close(&self) -> bool {
+        self.close
+    }
+
     /// One cycle while every tendon should pull.
     #[inline(always)]
     pub fn watch(&mut self, error: &LengthError<T>, growth: &ErrorGrowth) {
@@ -190,6 +203,7 @@ impl<T: Scalar> Agreement<T> {
         let change_m = error.mean_m - reference.mean_m;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
+        self.close = change_m.abs() <= allowed_m * T::from(CLOSE_PART);
         self.beyond.step(self.beyond_now_m - swings_m);
     }
 }

@@ -167,6 +167,7 @@ impl<T: Scalar> AxisMonitor<T> {
         i: usize,
         view: &MonitorInput<'_, T>,
         jump_n: T,
+        excess_trusted: bool,
         faults: &mut FaultSet,
     ) {
         let (sensors, bounds) = (view.sensors, &self.bounds);
@@ -192,8 +193,9 @@ impl<T: Scalar> AxisMonitor<T> {
         let over = alive && !(tension <= bounds.tension_n);
         let over = self.over_tension.update(over);
         // A cell that the others contradict pays out no tendon.
-        faults.add(Fault::OverTension, over && view.cells_trusted);
-        faults.add(Fault::Residual, over && !view.cells_trusted && view.led);
+        faults.add(Fault::OverTension, over && excess_trusted);
+        let told = view.led || view.cells_trusted;
+        faults.add(Fault::Residual, over && !excess_trusted && told);
         if self.jumped {
             return;
         }

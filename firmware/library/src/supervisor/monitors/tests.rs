@@ -31,6 +31,8 @@ struct Seen {
     led: bool,
     tensioned: bool,
     trusted: bool,
+    /// Whether they agree closely.
+    close: bool,
     contradicted: bool,
     residual_m: f64,
 }
@@ -66,6 +68,7 @@ impl Seen {
             led: true,
             tensioned: true,
             trusted: true,
+            close: true,
             contradicted: false,
             residual_m: 0.0,
         }
@@ -121,7 +124,8 @@ impl Watched {
             *code ^= u16::from(changes && self.cycle.is_multiple_of(2));
         }
         let input = seen.input(&sensors);
-        self.monitors.watch_cells(&input, seen.contradicted);
+        self.monitors
+            .watch_cells(&input, seen.contradicted, seen.trusted && seen.close);
         for axis in 0..3 {
             let view = if axis == AXIS {
                 seen.view
