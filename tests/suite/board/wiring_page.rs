@@ -76,7 +76,10 @@ fn the_current_sensor_covers_the_limits_in_both_directions() {
     assert!(wrong_a < 0.2 * f64::from(settings.limits.disagreement_a));
     let [volts, fault] = page.broken("current sensor to board");
     assert_eq!(volts, format!("0, which is −{range_a:.1} A"));
-    assert_eq!(fault, "too much current, within 3 ms");
+    assert_eq!(
+        fault,
+        "too much current, within 3 ms while the drivers are on"
+    );
     assert!(range_a > limit_a);
     // From no current to the limit, and 2 ms for the fault.
     let limit_v = FULL_V / 2.0 - limit_a * gain * shunt;
@@ -182,7 +185,10 @@ fn the_motor_supply_is_measured_fused_and_takes_what_the_motors_give_back() {
     assert!(bounds_v[0] < supply && supply < bounds_v[1] && bounds_v[1] < range_v);
     let mean_s = r18 * r19 / (r18 + r19) * c4;
     assert!(mean_s > 10.0 * PULSE_S && mean_s < 2e-3, "{mean_s} s");
-    assert_eq!(page.broken("resistor R18"), ["0", "supply too low"]);
+    assert_eq!(
+        page.broken("resistor R18"),
+        ["0", "supply too low, while the drivers are on"]
+    );
     assert_eq!(
         page.broken("resistor R19"),
         ["above 3.3, clamped", "supply too high"]

@@ -85,6 +85,21 @@ fn a_leg_whose_sensors_disagree_has_to_home_once_it_was_paid_out() {
     assert!(!still.leg.telemetry().homed);
 }
 
+/// An emergency stop ends what is compared as well: what had jumped before has to be homed all the same.
+#[test]
+fn a_leg_whose_tension_jumped_has_to_home_after_an_emergency_stop() {
+    let mut still = jumped();
+    still.sensors.emergency_stop = true;
+    still.run(400);
+    let telemetry = still.leg.telemetry();
+    assert!(telemetry.state == State::Off && !telemetry.homed);
+    still.sensors.emergency_stop = false;
+    still.run(400);
+    assert_eq!(still.obey(Command::Clear), Ok(()));
+    assert_eq!(still.leg.telemetry().state, State::Disarmed);
+    assert_eq!(still.obey(Command::Arm), Err(CommandRefusal::NotHomed));
+}
+
 /// A leg that was stopped keeps its zero.
 #[test]
 fn a_leg_that_was_stopped_is_paid_out_with_its_zero() {
