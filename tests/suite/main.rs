@@ -106,6 +106,7 @@ mod board {
     mod chip_mistakes;
     mod chip_recorder;
     mod chip_scenarios;
+    mod chip_signals;
     mod chip_speed;
     mod chip_supply;
     mod chip_transcript;
