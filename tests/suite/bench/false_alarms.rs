@@ -47,6 +47,12 @@ fn a_motor_that_brakes_as_hard_as_it_can_does_not_run_away() {
     require_no_alarm(5502, 5, "notch_universal", 342.0);
 }
 
+/// A use that once ended in **motor runs away**: a motor that paid out was led to turn about, and was still 0.45 mm away as it braked.
+#[test]
+fn a_motor_that_brakes_as_it_pays_out_does_not_run_away() {
+    require_no_alarm(20_261_129, 4, "elastic_rod_universal", 561.0);
+}
+
 /// A use that once ended in **sensors disagree**: a leg that can twist was armed with the torsion of its last target, which a frozen load that was
 /// gone had been part of. Its estimated pose jumped by half a degree.
 #[test]

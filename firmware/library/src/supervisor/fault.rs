@@ -251,7 +251,7 @@ faults! {
     27 RunsAway {
         name: "motor runs away",
         reaction: GateOff,
-        cause: "a motor is three quarters of following_m away from where it is led, and goes farther",
+        cause: "a motor is three quarters of following_m away from where it is led, nine tenths where it pays out, and goes farther",
         remedy: "check the driver and the motor's wires",
         clears: Command,
     }

@@ -21,6 +21,10 @@ const OVER_CHECKS: u32 = 4;
 /// that pays out at 29 mm/s and has to stop came there in `leg strikes --false-alarms`, at its highest current.
 const AWAY_PART: f32 = 0.75;
 
+/// The same of a motor that pays out, as a part of that: one that is led to turn about from its highest speed brakes by all its current, and comes to
+/// three quarters of the distance (`a_motor_that_brakes_as_it_pays_out_does_not_run_away`).
+const PAID_OUT_PART: f32 = 1.2;
+
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
 /// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
 const STEP_PART: f32 = 0.9;
@@ -266,7 +270,12 @@ impl<T: Scalar> AxisMonitor<T> {
         let off_m = axis.following_m.abs();
         // Farther from where it is led with every tick: it does not obey its voltage.
         let away = axis.following_m * axis.speed_m_per_s < T::zero();
-        faults.add(Fault::RunsAway, away && !(off_m <= bounds.away_m));
+        let away_m = if axis.speed_m_per_s < T::zero() {
+            bounds.away_m * T::from(PAID_OUT_PART)
+        } else {
+            bounds.away_m
+        };
+        faults.add(Fault::RunsAway, away && !(off_m <= away_m));
         faults.add(Fault::Following, view.led && !(off_m <= bounds.following_m));
         let over_current = !(current.abs() <= bounds.current_a);
         faults.add(Fault::OverCurrent, self.over_current.update(over_current));
