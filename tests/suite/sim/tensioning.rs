@@ -254,7 +254,7 @@ fn a_leg_that_does_not_estimate_its_load_is_not_measured() {
 }
 
 /// How far a leg rests off a target at the farthest tilt that it was sent to after homing, mm, with so many kilograms.
-fn off_target_mm(rig: &RigFile, plant: PlantSettings, azimuth_deg: f64, payload_kg: f64) -> f64 {
+fn target_error_mm(rig: &RigFile, plant: PlantSettings, azimuth_deg: f64, payload_kg: f64) -> f64 {
     let mut stand = homed(rig, plant);
     stand.wait(TENSIONED_S).unwrap();
     assert_eq!(elongation_factor(&stand), 1.0);
@@ -298,7 +298,7 @@ fn tendons_that_are_off_by_less_than_is_measured_move_where_the_leg_rests() {
                 curve_error,
                 ..rig.plant
             };
-            off_mm.push(off_target_mm(&rig, plant, 70.0, payload_kg));
+            off_mm.push(target_error_mm(&rig, plant, 70.0, payload_kg));
         }
     }
     require_nearly(REST_MM, &off_mm);
@@ -323,7 +323,7 @@ fn a_load_cell_that_is_off_by_little_moves_where_the_leg_rests() {
             let mut plant = rig.plant;
             plant.cell_gain_error[cell] = error;
             for azimuth_deg in [10.0, 70.0, 130.0, 190.0, 250.0, 310.0] {
-                off_mm.push(off_target_mm(&rig, plant, azimuth_deg, 1.0));
+                off_mm.push(target_error_mm(&rig, plant, azimuth_deg, 1.0));
             }
         }
     }

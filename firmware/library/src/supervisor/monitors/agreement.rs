@@ -79,7 +79,8 @@ pub const SETTLE_CYCLES: u16 = 200;
 const HARD_SWING_M: f32 = 4e-5;
 const DOUBT_TIME_S: f32 = 0.5;
 
-/// Part of the allowed change within which a held leg is that a load pulls: with cells and curves that are 2 % off, it changes by a twentieth.
+/// Part of the allowed change within which a held leg is that a load pulls, also with cells and curves that are 2 % off
+/// (`a_held_leg_that_is_overloaded_is_ramped_down`); a cell that drifted was at half of it as it came to show too much.
 const CLOSE_PART: f32 = 0.25;
 
 /// Cycles after which nothing of it is left, 5 s.
