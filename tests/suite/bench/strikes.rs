@@ -327,6 +327,20 @@ fn a_held_leg_is_not_paid_out_by_a_cell_that_drifted() {
     require_within(281_129, &[(4615, "cell_drifting", 1.0)]);
 }
 
+/// The nearest to their bars that are known of one seed.
+#[test]
+fn what_is_nearest_to_its_bar_keeps_it() {
+    require_within(
+        281_129,
+        &[
+            (1511, "cell_wanders", 3.0),
+            (6715, "driver_full_on", 90.0),
+            (7555, "encoder_lost", 1.2),
+            (12_704, "encoder_jumps", 4.0),
+        ],
+    );
+}
+
 /// Strikes by motors that obey or are counted in parts, the farthest that are known.
 #[test]
 fn a_motor_that_obeys_in_parts_leads_the_leg_a_little_off_its_way() {
