@@ -30,7 +30,8 @@ use crate::jog::JogEnd;
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{
-    Agreement, ErrorGrowth, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
+    Agreement, ErrorGrowth, Event, Excess, Fault, FaultSet, MonitorInput, Monitors, State,
+    Supervisor,
 };
 use command_queue::CommandQueue;
 use leg_model::{Error, Scalar};
@@ -247,10 +248,13 @@ impl<T: Scalar> Leg<T> {
         faults.add(Fault::Residual, first && !self.agreement.agree());
         if self.phase.monitors_cells() {
             let contradicted = self.agreement.contradicts();
-            // A leg that is held is at rest: nothing but a load changes its tensions.
-            let close = state != State::Held || self.agreement.is_close();
-            self.monitors
-                .watch_cells(&input, contradicted, input.cells_trusted && close);
+            let excess = match input.cells_trusted {
+                true if state == State::Held => self.agreement.held_excess(),
+                true => Excess::Trusted,
+                false if state.led() => Excess::Doubted,
+                false => Excess::Open,
+            };
+            self.monitors.watch_cells(&input, contradicted, excess);
         }
         if let Some(turn) = self.phase.monitored_motor()
             && let (Some(axis), Some(&pulled)) =
@@ -316,6 +320,7 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
+        self.agreement.forget_far();
         if self.mode.change_station(state, &self.shared) {
             return;
         }
@@ -357,7 +362,10 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn doubts(&self, measured: &Measured<T>) -> FaultSet {
         let mut doubts = FaultSet::NONE;
-        let agree = self.agreement.agree() && !self.shared.load_seen;
+        // A cell that showed too much tension by itself is within what is allowed yet.
+        let latched = self.supervisor.latched().has(Fault::Residual);
+        let far = latched && self.agreement.watches() && !self.agreement.is_close();
+        let agree = self.agreement.agree() && !self.shared.load_seen && !far;
         doubts.add(Fault::Residual, !agree);
         let jumped = self.monitors.stay_jumped(&measured.tensions_n);
         doubts.add(Fault::TensionJump, jumped);

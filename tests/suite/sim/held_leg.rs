@@ -184,3 +184,35 @@ fn a_held_leg_that_is_overloaded_is_ramped_down() {
         }
     }
 }
+
+/// So is one that is pushed for a short time, or was stopped on its way, and swings: whatever is named, nothing is said of its sensors.
+#[test]
+fn an_overload_of_a_leg_that_swings_is_no_doubt_of_its_sensors() {
+    for name in ["table1", "spherical", "leaf_spring_universal"] {
+        for sign in [1.0, -1.0] {
+            let mut rig = RigFile::load(Some(name.as_ref())).unwrap();
+            rig.pretension_n = 100.0;
+            rig.plant.curve_error = 0.02 * sign;
+            rig.plant.cell_gain_error = [0.02, -0.02, 0.01].map(|error| sign * error);
+            let sound = armed(&rig, [0.0, 20.0], 1.0, 84);
+            for (moves, force_n, push_s) in
+                [(false, 8.0, 0.05), (false, 14.0, 0.1), (true, 14.0, 0.1)]
+            {
+                let mut stand = sound.clone();
+                if moves {
+                    stand.command(&move_to([180.0, 10.0])).unwrap();
+                    pass(&mut stand, 0.4);
+                }
+                stand.command(&Command::Stop).unwrap();
+                pass(&mut stand, if moves { 0.0 } else { 0.5 });
+                let force = Vector3::new(-force_n, 0.0, 0.0);
+                stand.plant().push(force, push_s, 0.0);
+                pass(&mut stand, 1.5);
+                let found = faults(&stand);
+                let highest_n = stand.truth.tensions_n;
+                println!("{name} {sign} {moves} {force_n} N: {found:?} {highest_n:.0?}");
+                assert!(!found.has(Fault::Residual), "{name}: {found:?}");
+            }
+        }
+    }
+}

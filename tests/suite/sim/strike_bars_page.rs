@@ -45,8 +45,12 @@ fn widest(defect: Defect, activity: Activity) -> [String; 3] {
     } else {
         ""
     };
+    let tension = match activity {
+        Activity::Homing => tension,
+        _ => tension + by_itself,
+    };
     [
-        tension + by_itself,
+        tension,
         format!("{}{by_itself}", near.tip_mm.max(far.tip_mm)),
         named.map_or_else(|| "none".into(), |time_s| format!("{time_s}")),
     ]

@@ -252,7 +252,8 @@ impl<T: Scalar> Active<T> {
         self.disarming && (!self.trajectory.moving() || self.without_target)
     }
 
-    /// Whether it was armed just now with tendons that pulled already, one of which is below the minimum tension since.
+    /// Whether it was armed just now with tendons that pulled already, one of which is below the minimum tension since, or which searches where it
+    /// begins without its load.
     #[inline(always)]
     pub fn begins_taut(&self) -> bool {
         let taut = self.slack.taken_up() || self.unloaded.is_some();

@@ -76,7 +76,7 @@ faults! {
     2 OverTension {
         name: "too much tension",
         reaction: RampDown,
-        cause: "a tension is above the maximum tension by over_tension_part for 2 ms, and the counters agree, of a held leg closely, or the leg homes",
+        cause: "a tension is above the maximum tension by over_tension_part for 2 ms, and the counters agree (closely, where the leg is held), or the leg homes",
         remedy: "look what pulls at the leg; check the load cell",
         clears: Command,
     }

@@ -16,6 +16,17 @@ use leg_model::Scalar;
 /// 6.2 N within a millisecond while the ready rigs were used for 1.2 h (`leg strikes --false-alarms`).
 const CONTRADICTED_PART: f32 = 0.3;
 
+/// What it means that a load cell shows too much tension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Excess {
+    /// Too much tension.
+    Trusted,
+    /// Sensors that disagree.
+    Doubted,
+    /// Nothing yet.
+    Open,
+}
+
 /// What the monitors check.
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInput<'a, T> {
@@ -67,16 +78,11 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// Checks the load cells, once a cycle; `contradicted`: while lengths and tensions disagree; `excess_trusted`: whether a tension is called too
-    /// much by its cell alone.
+    /// Checks the load cells, once a cycle; `contradicted`: while lengths and tensions disagree; `excess`: what a tension above the
+    /// maximum is then.
     // One after the other without a loop: there is little time left in their tick.
     #[inline(never)]
-    pub fn watch_cells(
-        &mut self,
-        view: &MonitorInput<'_, T>,
-        contradicted: bool,
-        excess_trusted: bool,
-    ) {
+    pub fn watch_cells(&mut self, view: &MonitorInput<'_, T>, contradicted: bool, excess: Excess) {
         let [alone_n, contradicted_n] = self.jump_n;
         let jump_n = if contradicted {
             contradicted_n
@@ -86,11 +92,11 @@ impl<T: Scalar> Monitors<T> {
         let [first, second, third] = &mut self.axes;
         let [a, b, c] = &mut self.axis_faults;
         *a = a.difference(FaultSet::OF_CELLS);
-        first.watch_cell(0, view, jump_n, excess_trusted, a);
+        first.watch_cell(0, view, jump_n, excess, a);
         *b = b.difference(FaultSet::OF_CELLS);
-        second.watch_cell(1, view, jump_n, excess_trusted, b);
+        second.watch_cell(1, view, jump_n, excess, b);
         *c = c.difference(FaultSet::OF_CELLS);
-        third.watch_cell(2, view, jump_n, excess_trusted, c);
+        third.watch_cell(2, view, jump_n, excess, c);
     }
 
     /// Checks the motor of an axis, from 0 to 2, and its encoder; each has its turn once a cycle.

@@ -83,10 +83,10 @@ fn a_reaction_only_ever_takes_authority_away() {
     }
 }
 
-/// What a fault leads to in each state in which a motor may turn: where nothing stands, the state stays.
+/// What a fault leads to in each state: where nothing stands, the state stays.
 #[test]
 fn each_state_obeys_each_reaction() {
-    use State::{Active, Boot, Disarmed, Held, Homing, KeepingStation, Off, RampingDown};
+    use State::{Active, Boot, Disarmed, Held, Homing, Jogging, KeepingStation, Off, RampingDown};
     for (state, hold, ramp_down, gate_off) in [
         (Boot, None, None, Some(Off)),
         (Disarmed, None, None, Some(Off)),
@@ -96,6 +96,7 @@ fn each_state_obeys_each_reaction() {
         (Held, None, Some(RampingDown), Some(Off)),
         (RampingDown, None, None, Some(Off)),
         (Off, None, None, None),
+        (Jogging, Some(Off), Some(Off), Some(Off)),
     ] {
         for (reaction, after) in REACTIONS.into_iter().zip([None, hold, ramp_down, gate_off]) {
             let next = state.next(Event::Reaction(reaction));

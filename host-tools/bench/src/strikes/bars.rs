@@ -4,7 +4,7 @@
 mod tests;
 
 use super::activity::Activity;
-use super::naming::{DRIFTS_S, Unstruck, WANDERED_N, WANDERS_BY_N, named_s};
+use super::naming::{DRIFTED_S, Unstruck, WANDERED_N, WANDERS_BY_N, named_s};
 use leg_firmware::settings::CurrentOutput;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
@@ -141,7 +141,7 @@ pub struct StrikeBars {
     /// Whether the tip may sag once a tension that truly is beyond its bar has the leg ramp down: with two cells that changed their
     /// places it swings ever more, and its tendons have to be paid out.
     pub sags: bool,
-    /// Whether no firmware can brake the leg, so that it is judged by what it does by itself where that is more: see `cut_off.rs`.
+    /// Whether it may also do what a leg whose motors stop at once does, and a little more: see `cut_off.rs`.
     pub cut_off: bool,
 }
 
@@ -176,6 +176,10 @@ impl StrikeBars {
             (true, false) => (AT_MAX_BEYOND, GAIN_AT_MAX_MM),
             (false, _) => (0.0, 0.0),
         };
+        let steps = matches!(
+            defect,
+            Some(Defect::CellGainStep(_) | Defect::CellOffsetStep(_))
+        );
         let cuts_off = defect.is_some_and(|defect| cuts_off(defect) && !is_slow(defect, activity));
         Self {
             tension_n: f_max_n * (1.0 + excess_part(defect, activity).max(stopped_part)),
@@ -187,7 +191,8 @@ impl StrikeBars {
             tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
             sags: defect == Some(Defect::CellsSwapped),
-            cut_off: on_the_way && (at_max || cuts_off),
+            // Others come to that later.
+            cut_off: on_the_way && (at_max && steps || cuts_off),
         }
     }
 
@@ -309,8 +314,8 @@ const fn is_found_at_once(defect: Defect) -> bool {
 fn shows_maximum(defect: Defect, f_max_n: f64, highest_n: [f64; 3]) -> bool {
     let shows_n = match defect {
         Defect::CellGainStep(i) | Defect::CellGainDrift(i) => 1.2 * highest_n[i],
-        // 5 N in a second, for the time in which it is to be named.
-        Defect::CellDrifting(i) => highest_n[i] + 5.0 * DRIFTS_S,
+        // 5 N in a second.
+        Defect::CellDrifting(i) => highest_n[i] + 5.0 * DRIFTED_S,
         Defect::CellOffsetStep(i) => highest_n[i] + 10.0,
         Defect::CellWanders(i) => highest_n[i] + WANDERS_BY_N + WANDERED_N,
         _ => return false,

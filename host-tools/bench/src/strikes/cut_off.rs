@@ -25,7 +25,7 @@ pub(super) struct CutOff {
 }
 
 impl CutOff {
-    /// Of a leg whose drivers are switched off by their fault line, where one is struck by a defect. A motor that stops by itself does so here, too.
+    /// Of a leg all of whose drivers switch their motors off, where one is struck by a defect. A motor that stops by itself does so here, too.
     ///
     /// # Errors
     /// As the simulation.
@@ -39,7 +39,9 @@ impl CutOff {
         let mut found = Self::default();
         while stand.time_s() < struck_s + WATCHED_S {
             let off = stand.time_s() >= struck_s + cut_off_s;
-            stand.plant().set_defect(Defect::DriverFault(0), off);
+            for motor in 0..3 {
+                stand.plant().set_defect(Defect::DriverFault(motor), off);
+            }
             stand.tick()?;
             let tensions_n = stand.truth.tensions_n;
             found.tension_n = tensions_n.into_iter().fold(found.tension_n, f64::max);
@@ -67,12 +69,8 @@ const fn stops_by_itself(defect: Defect) -> (Option<Defect>, f64) {
         Defect::DirectionStuck(_) | Defect::HalfBridgeOpenOutwards(_) => {
             (Some(defect), CONTRADICTED_S)
         }
-        // A motor whose tendon seems to be at the maximum tension is stopped.
-        Defect::CellGainStep(i)
-        | Defect::CellGainDrift(i)
-        | Defect::CellDrifting(i)
-        | Defect::CellOffsetStep(i)
-        | Defect::CellWanders(i) => (Some(Defect::MotorJammed(i)), 0.0),
+        // A motor whose tendon seems to be at the maximum tension at once is stopped.
+        Defect::CellGainStep(i) | Defect::CellOffsetStep(i) => (Some(Defect::MotorJammed(i)), 0.0),
         _ => (None, 0.0),
     }
 }

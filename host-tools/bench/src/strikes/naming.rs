@@ -13,6 +13,9 @@ pub(super) const WANDERS_BY_N: f64 = 12.0;
 pub(super) const WANDERS_S: f64 = 1.5;
 pub(super) const DRIFTS_S: f64 = 8.0;
 
+/// For how long a cell drifts before a leg at rest is stopped, s, but for those that are near to that bar.
+pub(super) const DRIFTED_S: f64 = 7.0;
+
 /// By how much a cell wanders until it is named, as one deviation, N: 20 N by the root of 2 s, for it is off for a part of the time alone.
 pub(super) const WANDERED_N: f64 = 28.3;
 

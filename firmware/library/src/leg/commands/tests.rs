@@ -4,10 +4,11 @@ use crate::command::{Command, CommandRefusal, Compensation};
 use crate::control::{LengthError, Measured};
 use crate::leg::Leg;
 use crate::leg::active::Active;
+use crate::leg::held::Held;
 use crate::leg::mode::Mode;
 use crate::set_point::{SetPoint, StreamPart};
 use crate::settings::Settings;
-use crate::supervisor::{ErrorGrowth, SETTLE_CYCLES, State};
+use crate::supervisor::{ErrorGrowth, Fault, FaultSet, SETTLE_CYCLES, State};
 use core::f64::consts::TAU;
 use leg_model::{Direction, Scalar};
 
@@ -82,6 +83,41 @@ fn a_leg_whose_sensors_disagree_is_held_in_place_of_keeping_station() {
         assert!(leg.agreement.watches() && leg.agreement.trusts() == agrees);
         assert_eq!(leg.execute(Command::KeepStation, &MEASURED), Ok(()));
         assert_eq!(leg.mode.state(), state);
+    }
+}
+
+/// A held leg whose cell came to show too much tension by itself is not cleared while its sensors are not close, although they agree, and has no zero once it
+/// is paid out.
+#[test]
+fn a_leg_that_is_held_by_a_doubted_excess_has_to_home() {
+    for (part, cleared) in [(0.5, false), (0.1, true)] {
+        let mut leg = armed();
+        leg.shared.zero_m = Some([0.2; 3]);
+        leg.mode = Mode::Held(Held::resting());
+        let mut error = LengthError {
+            mean_m: 0.0,
+            elongations_m: [1e-3; 3],
+        };
+        for _ in 0..=SETTLE_CYCLES {
+            leg.agreement.watch(&error, &ErrorGrowth::STANDING);
+        }
+        error.mean_m = part * f64::from(Settings::table_1().unwrap().limits.residual_change_m);
+        leg.agreement.watch(&error, &ErrorGrowth::STANDING);
+        assert!(leg.agreement.agree() && leg.agreement.is_close() == cleared);
+        leg.supervisor
+            .react(State::Held, FaultSet::single(Fault::Residual));
+        // It is not there any more in the next tick.
+        leg.supervisor.react(State::Held, FaultSet::NONE);
+        let mut paid_out = leg.clone();
+        let expected = if cleared {
+            Ok(())
+        } else {
+            Err(CommandRefusal::Faulted)
+        };
+        assert_eq!(leg.execute(Command::Clear, &MEASURED), expected);
+        assert_eq!(paid_out.execute(Command::Disarm, &MEASURED), Ok(()));
+        assert_eq!(paid_out.mode.state(), State::RampingDown);
+        assert_eq!(paid_out.shared.zero_m.is_some(), cleared);
     }
 }
 

@@ -6,6 +6,7 @@
 //! twists. A wrong load cell changes the mean by a third of its error over the stiffness of the tendon, and a lost count by a
 //! third of its length.
 
+use super::Excess;
 use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
 use crate::settings::Settings;
 use leg_model::Scalar;
@@ -83,6 +84,10 @@ const DOUBT_TIME_S: f32 = 0.5;
 /// (`a_held_leg_that_is_overloaded_is_ramped_down`); a cell that drifted was at half of it as it came to show too much.
 const CLOSE_PART: f32 = 0.25;
 
+/// Cycles after which a swing of a held leg explains no more that the change is beyond that, 0.3 s: half a period of the slowest first mode, 2 Hz,
+/// takes 0.25 s, and the change of a swing is nothing once in each.
+const FAR_CYCLES: u16 = 600;
+
 /// Cycles after which nothing of it is left, 5 s.
 const FADE_CYCLES: u16 = 10_000;
 
@@ -94,8 +99,9 @@ pub struct Agreement<T> {
     beyond: LowPass<T>,
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
-    /// Whether the change is now within a part of what is allowed: see [`Self::is_close`].
+    /// Whether the change is now within [`CLOSE_PART`] of what is allowed, and for how many cycles of a held leg it has not been.
     close: bool,
+    far_cycles: u16,
     change_max_m: T,
 }
 
@@ -118,6 +124,7 @@ impl<T: Scalar> Agreement<T> {
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             close: false,
+            far_cycles: 0,
             change_max_m: settings.limits.residual_change_m.into(),
         }
     }
@@ -166,6 +173,33 @@ impl<T: Scalar> Agreement<T> {
     #[inline(always)]
     pub fn is_close(&self) -> bool {
         self.close
+    }
+
+    /// What a tension above the maximum is of a leg that is held, whose sensors are watched and agree; once a cycle. It may be a load, and they have
+    /// to agree closely then; while the leg swings they do now and then.
+    #[cold]
+    #[inline(never)]
+    pub fn held_excess(&mut self) -> Excess {
+        match (self.stays_far(), self.close) {
+            (true, _) => Excess::Doubted,
+            (false, true) => Excess::Trusted,
+            (false, false) => Excess::Open,
+        }
+    }
+
+    /// One cycle: whether they have not agreed closely for longer than a swing explains.
+    fn stays_far(&mut self) -> bool {
+        self.far_cycles = if self.close {
+            0
+        } else {
+            self.far_cycles.saturating_add(1)
+        };
+        self.far_cycles >= FAR_CYCLES
+    }
+
+    /// Counts anew: another state begins.
+    pub fn forget_far(&mut self) {
+        self.far_cycles = 0;
     }
 
     /// One cycle while every tendon should pull.

@@ -1,6 +1,6 @@
 //! What raises the faults of one axis.
 
-use super::MonitorInput;
+use super::{Excess, MonitorInput};
 use crate::control::{
     AxisView, CYCLE_S, CYCLE_TICKS, Debounce, LowPass, TICK_S, bounds::min, ticks,
 };
@@ -17,13 +17,12 @@ const JUMP_CHECKS: usize = 2;
 /// cell needs to jump. Scenario `fault_over_current` holds it.
 const OVER_CHECKS: u32 = 4;
 
-/// Part of `following_m` by which a motor may be away from where it is led while it goes farther. Three fifths were too little: a motor
-/// that pays out at 29 mm/s and has to stop came there in `leg strikes --false-alarms`, at its highest current.
+/// Part of `following_m` by which a motor that reels in may be away from where it is led while it goes farther.
 const AWAY_PART: f32 = 0.75;
 
-/// The same of a motor that pays out, as a part of that: one that is led to turn about from its highest speed brakes by all its current, and comes to
-/// three quarters of the distance (`a_motor_that_brakes_as_it_pays_out_does_not_run_away`).
-const PAID_OUT_PART: f32 = 1.2;
+/// The same of one that pays out. One that has to stop or turn about from its highest speed brakes by all its current, and comes to three quarters of
+/// `following_m` (`a_motor_that_brakes_as_it_pays_out_does_not_run_away`).
+const PAYING_OUT_AWAY_PART: f32 = 0.9;
 
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
 /// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
@@ -171,7 +170,7 @@ impl<T: Scalar> AxisMonitor<T> {
         i: usize,
         view: &MonitorInput<'_, T>,
         jump_n: T,
-        excess_trusted: bool,
+        excess: Excess,
         faults: &mut FaultSet,
     ) {
         let (sensors, bounds) = (view.sensors, &self.bounds);
@@ -197,9 +196,11 @@ impl<T: Scalar> AxisMonitor<T> {
         let over = alive && !(tension <= bounds.tension_n);
         let over = self.over_tension.update(over);
         // A cell that the others contradict pays out no tendon.
-        faults.add(Fault::OverTension, over && excess_trusted);
-        let told = view.led || view.cells_trusted;
-        faults.add(Fault::Residual, over && !excess_trusted && told);
+        // Rare, and so apart.
+        if over {
+            faults.add(Fault::OverTension, excess == Excess::Trusted);
+            faults.add(Fault::Residual, excess == Excess::Doubted);
+        }
         if self.jumped {
             return;
         }
@@ -270,12 +271,12 @@ impl<T: Scalar> AxisMonitor<T> {
         let off_m = axis.following_m.abs();
         // Farther from where it is led with every tick: it does not obey its voltage.
         let away = axis.following_m * axis.speed_m_per_s < T::zero();
-        let away_m = if axis.speed_m_per_s < T::zero() {
-            bounds.away_m * T::from(PAID_OUT_PART)
-        } else {
-            bounds.away_m
-        };
-        faults.add(Fault::RunsAway, away && !(off_m <= away_m));
+        // Rare, and so apart.
+        if away && !(off_m <= bounds.away_m) {
+            let paid_out_m = bounds.away_m * T::from(PAYING_OUT_AWAY_PART / AWAY_PART);
+            let reels_in = !(axis.speed_m_per_s < T::zero());
+            faults.add(Fault::RunsAway, reels_in || !(off_m <= paid_out_m));
+        }
         faults.add(Fault::Following, view.led && !(off_m <= bounds.following_m));
         let over_current = !(current.abs() <= bounds.current_a);
         faults.add(Fault::OverCurrent, self.over_current.update(over_current));

@@ -6,7 +6,7 @@ mod board;
 mod cells;
 mod motors;
 
-use super::{MonitorInput, Monitors};
+use super::{Excess, MonitorInput, Monitors};
 use crate::control::{AxisView, CYCLE_TICKS, Measured, ticks};
 use crate::sensors::Sensors;
 use crate::settings::{Limits, Settings};
@@ -31,8 +31,8 @@ struct Seen {
     led: bool,
     tensioned: bool,
     trusted: bool,
-    /// Whether they agree closely.
-    close: bool,
+    /// What too much tension is of a leg whose cells are trusted.
+    excess: Excess,
     contradicted: bool,
     residual_m: f64,
 }
@@ -68,7 +68,7 @@ impl Seen {
             led: true,
             tensioned: true,
             trusted: true,
-            close: true,
+            excess: Excess::Trusted,
             contradicted: false,
             residual_m: 0.0,
         }
@@ -124,8 +124,12 @@ impl Watched {
             *code ^= u16::from(changes && self.cycle.is_multiple_of(2));
         }
         let input = seen.input(&sensors);
-        self.monitors
-            .watch_cells(&input, seen.contradicted, seen.trusted && seen.close);
+        let excess = match (seen.trusted, seen.led) {
+            (true, _) => seen.excess,
+            (false, true) => Excess::Doubted,
+            (false, false) => Excess::Open,
+        };
+        self.monitors.watch_cells(&input, seen.contradicted, excess);
         for axis in 0..3 {
             let view = if axis == AXIS {
                 seen.view

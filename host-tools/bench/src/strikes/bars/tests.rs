@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::strikes::cut_off::{MORE, MORE_MM};
-use crate::strikes::naming::{NAMED_S, WANDERS_S};
+use crate::strikes::naming::{DRIFTS_S, NAMED_S, WANDERS_S};
 
 #[test]
 fn the_page_says_the_bars() {

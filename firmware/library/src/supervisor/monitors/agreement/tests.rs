@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Agreement, CURVE_PART, ErrorGrowth, LengthError, SETTLE_CYCLES};
+use super::{Agreement, CURVE_PART, ErrorGrowth, FAR_CYCLES, LengthError, SETTLE_CYCLES};
 use crate::control::CYCLE_S;
 use crate::settings::Settings;
 use core::f64::consts::TAU;
@@ -241,6 +241,28 @@ fn sensors_agree_closely_within_a_quarter_of_what_is_a_fault() {
         leg.error.mean_m += part * leg.agreement.change_max_m;
         leg.watch(false);
         assert_eq!(leg.agreement.is_close(), close, "{part}");
+    }
+}
+
+/// What is far for longer than half a swing stays far; once it was close, or another state has begun, that begins anew.
+#[test]
+fn sensors_stay_far_after_three_tenths_of_a_second() {
+    let mut leg = Leg::taut();
+    let sound_m = leg.error.mean_m;
+    for state_ends in [false, true] {
+        leg.error.mean_m = sound_m + 0.5 * leg.agreement.change_max_m;
+        leg.watch(false);
+        for _ in 1..FAR_CYCLES {
+            assert!(!leg.agreement.stays_far());
+        }
+        assert!(leg.agreement.stays_far() && leg.agreement.trusts());
+        if state_ends {
+            leg.agreement.forget_far();
+        } else {
+            leg.error.mean_m = sound_m;
+            leg.watch(false);
+        }
+        assert!(!leg.agreement.stays_far());
     }
 }
 

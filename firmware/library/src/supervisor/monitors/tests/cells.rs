@@ -85,9 +85,9 @@ fn too_much_tension_is_that_of_a_trusted_cell() {
     assert_eq!(residual, after(Fault::Residual));
     let not_led = too_much(0.01, |s| (s.trusted, s.led) = (false, false));
     assert_eq!(not_led, None);
-    // Nor is it of a leg that is held, whose sensors agree, but not closely.
-    let not_close = too_much(0.01, |s| (s.close, s.led) = (false, false));
-    assert_eq!(not_close, after(Fault::Residual));
+    let doubted = too_much(0.01, |s| s.excess = Excess::Doubted);
+    assert_eq!(doubted, after(Fault::Residual));
+    assert_eq!(too_much(0.01, |s| s.excess = Excess::Open), None);
 }
 
 /// A change is counted over a millisecond: two cycles.
