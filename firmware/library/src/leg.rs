@@ -320,7 +320,6 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
-        self.agreement.forget_far();
         if self.mode.change_station(state, &self.shared) {
             return;
         }
@@ -336,6 +335,7 @@ impl<T: Scalar> Leg<T> {
             lost |= self.doubts(measured).any();
             self.monitors.forget_jumps();
         }
+        self.agreement.forget_far();
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
@@ -364,7 +364,7 @@ impl<T: Scalar> Leg<T> {
         let mut doubts = FaultSet::NONE;
         // A cell that showed too much tension by itself is within what is allowed yet.
         let latched = self.supervisor.latched().has(Fault::Residual);
-        let far = latched && self.agreement.watches() && !self.agreement.is_close();
+        let far = latched && self.agreement.is_far();
         let agree = self.agreement.agree() && !self.shared.load_seen && !far;
         doubts.add(Fault::Residual, !agree);
         let jumped = self.monitors.stay_jumped(&measured.tensions_n);

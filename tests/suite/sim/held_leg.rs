@@ -7,6 +7,7 @@ use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
 use nalgebra::Vector3;
 
 /// How little the tip of a leg moves that stands still, mm: its estimates' noise moves nothing.
@@ -214,5 +215,25 @@ fn an_overload_of_a_leg_that_swings_is_no_doubt_of_its_sensors() {
                 assert!(!found.has(Fault::Residual), "{name}: {found:?}");
             }
         }
+    }
+}
+
+/// A leg whose load cell is dead is not cleared, and is as soon as the cell is there again: what was refused meanwhile counts for nothing.
+#[test]
+fn a_held_leg_whose_load_cell_is_repaired_is_cleared() {
+    for tendon in 0..3 {
+        let mut stand = armed(&paper(), [0.0, 0.0], 0.0, 85);
+        stand.plant().set_defect(Defect::CellDead(tendon), true);
+        pass(&mut stand, 0.2);
+        assert_eq!(stand.state(), State::Held);
+        stand.command(&Command::Clear).unwrap();
+        pass(&mut stand, 0.01);
+        assert_eq!(stand.state(), State::Held);
+        assert!(faults(&stand).has(Fault::Residual));
+        stand.plant().set_defect(Defect::CellDead(tendon), false);
+        pass(&mut stand, 0.2);
+        stand.command(&Command::Clear).unwrap();
+        pass(&mut stand, 0.1);
+        assert_eq!(stand.state(), State::Active);
     }
 }

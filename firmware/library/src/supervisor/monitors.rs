@@ -7,7 +7,7 @@ use super::{Fault, FaultSet};
 use crate::control::{AxisView, Debounce, Measured, ticks};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
-pub use agreement::{Agreement, ErrorGrowth, SETTLE_CYCLES};
+pub use agreement::{Agreement, ErrorGrowth, FAR_CYCLES, SETTLE_CYCLES};
 use axis::AxisMonitor;
 
 use leg_model::Scalar;

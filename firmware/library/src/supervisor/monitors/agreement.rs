@@ -86,7 +86,7 @@ const CLOSE_PART: f32 = 0.25;
 
 /// Cycles after which a swing of a held leg explains no more that the change is beyond that, 0.3 s: half a period of the slowest first mode, 2 Hz,
 /// takes 0.25 s, and the change of a swing is nothing once in each.
-const FAR_CYCLES: u16 = 600;
+pub const FAR_CYCLES: u16 = 600;
 
 /// Cycles after which nothing of it is left, 5 s.
 const FADE_CYCLES: u16 = 10_000;
@@ -168,11 +168,10 @@ impl<T: Scalar> Agreement<T> {
         self.watches() && self.beyond_now_m <= T::zero()
     }
 
-    /// Whether the change was within a quarter of what is allowed when the sensors were watched last: that of a leg at rest whose load changes
-    /// is, and that of one whose load cell has come to show the maximum tension by itself is not.
-    #[inline(always)]
-    pub fn is_close(&self) -> bool {
-        self.close
+    /// Whether the sensors of a held leg that are watched had not agreed closely for longer than a swing explains when they were trusted last,
+    /// and do not yet.
+    pub fn is_far(&self) -> bool {
+        self.watches() && !self.close && self.far_cycles >= FAR_CYCLES
     }
 
     /// What a tension above the maximum is of a leg that is held, whose sensors are watched and agree; once a cycle. It may be a load, and they have

@@ -237,10 +237,10 @@ fn a_hard_swing_as_the_tendons_come_taut_is_no_lie() {
 fn sensors_agree_closely_within_a_quarter_of_what_is_a_fault() {
     for (part, close) in [(0.2, true), (0.3, false), (f64::NAN, false)] {
         let mut leg = Leg::taut();
-        assert!(leg.agreement.is_close());
+        assert!(leg.agreement.close);
         leg.error.mean_m += part * leg.agreement.change_max_m;
         leg.watch(false);
-        assert_eq!(leg.agreement.is_close(), close, "{part}");
+        assert_eq!(leg.agreement.close, close, "{part}");
     }
 }
 
