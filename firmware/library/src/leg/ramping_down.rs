@@ -36,6 +36,12 @@ impl<T: Scalar> RampingDown<T> {
         }
     }
 
+    /// Whether it relies on the pose.
+    #[cfg(test)]
+    pub const fn trusts_pose(&self) -> bool {
+        self.trusted
+    }
+
     /// One tick: true when every tendon has arrived, or a motor did not in time.
     #[inline(never)]
     pub fn relax(&mut self, phase: Phase, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {

@@ -4,11 +4,11 @@ use crate::command::{Command, CommandRefusal, Compensation};
 use crate::control::{LengthError, Measured};
 use crate::leg::Leg;
 use crate::leg::active::Active;
-use crate::leg::held::Held;
+use crate::leg::held::{Held, Momentum};
 use crate::leg::mode::Mode;
 use crate::set_point::{SetPoint, StreamPart};
 use crate::settings::Settings;
-use crate::supervisor::{ErrorGrowth, FAR_CYCLES, Fault, FaultSet, SETTLE_CYCLES, State};
+use crate::supervisor::{ErrorGrowth, Event, FAR_CYCLES, Fault, FaultSet, SETTLE_CYCLES, State};
 use core::f64::consts::TAU;
 use leg_model::{Direction, Scalar};
 
@@ -125,6 +125,61 @@ fn a_leg_that_is_held_by_a_doubted_excess_has_to_home() {
         assert_eq!(paid_out.execute(Command::Disarm, &MEASURED), Ok(()));
         assert_eq!(paid_out.mode.state(), State::RampingDown);
         assert_eq!(paid_out.shared.zero_m.is_some(), cleared);
+    }
+}
+
+/// A leg that hangs straight down is paid out no farther than to slack by a pose that its sensors agree on: not before every tendon has pulled for a
+/// while, nor with a fault, which may be one of what the pose is estimated by.
+#[test]
+fn a_ramp_down_relies_on_a_pose_that_is_watched_and_no_fault_doubts() {
+    let error = LengthError {
+        mean_m: 0.0,
+        elongations_m: [1e-3; 3],
+    };
+    for (watched, fault, trusted) in [
+        (true, None, true),
+        (false, None, false),
+        (true, Some(Fault::CommandTimeout), false),
+        (true, Some(Fault::CellStale), false),
+    ] {
+        let mut leg = armed();
+        leg.shared.zero_m = Some([0.2; 3]);
+        leg.mode = Mode::Held(Held::resting());
+        let cycles = if watched { SETTLE_CYCLES } else { 0 };
+        for _ in 0..=cycles {
+            leg.agreement.watch(&error, &ErrorGrowth::STANDING);
+        }
+        assert_eq!(leg.agreement.watches(), watched);
+        let faults = fault.map_or(FaultSet::NONE, FaultSet::single);
+        leg.supervisor.react(State::Held, faults);
+        assert_eq!(leg.end(Event::Disarm, &MEASURED), Ok(()));
+        let Mode::RampingDown(ramping_down) = &leg.mode else {
+            unreachable!("{:?}", leg.mode.state());
+        };
+        assert_eq!(ramping_down.trusts_pose(), trusted, "{watched} {fault:?}");
+    }
+}
+
+/// A leg that brakes gives way to a tension above the maximum, and no more once a load cell is in doubt.
+#[test]
+fn a_brake_gives_way_to_no_load_cell_in_doubt() {
+    for (fault, gives_way) in [
+        (None, true),
+        (Some(Fault::DriverFault), true),
+        (Some(Fault::TensionJump), false),
+        (Some(Fault::CellStuck), false),
+    ] {
+        let mut leg = armed();
+        let momentum = Momentum {
+            steps_m: [1e-6; 3],
+            ticks_to_end: None,
+        };
+        leg.mode = Mode::Held(Held::braking(&leg.shared, momentum, true));
+        leg.shared.f_max_n = 150.0;
+        let faults = fault.map_or(FaultSet::NONE, FaultSet::single);
+        leg.supervisor.react(State::Held, faults);
+        let _ = leg.advance(&MEASURED);
+        assert_eq!(leg.shared.f_max_n < f64::MAX, gives_way, "{fault:?}");
     }
 }
 
