@@ -174,10 +174,33 @@ fn after_three_failures_in_a_row_the_next_start_waits_with_outputs_off() -> Outc
     Ok(())
 }
 
-/// Starts the chip anew and drives: load cells that read the same for long are stuck.
+/// A failure long after the start begins a row of its own.
+#[test]
+fn a_second_without_a_failure_ends_the_row() -> Outcome {
+    let (mut session, image) = driven()?;
+    let chip = session.chip().ok_or("no chip")?;
+    for failure in 1..=3 {
+        replace(chip, &image, "ADC1_2", &[UNDEFINED])?;
+        // The third resets at once, as the two before.
+        reported(chip, MS / 8 + CUT_MAX)?;
+        match failure {
+            1 => drive_anew(chip)?,
+            2 => drive_later(chip, 1_100)?,
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Starts the chip anew and drives.
 fn drive_anew(chip: &mut Chip) -> Outcome {
+    drive_later(chip, 60)
+}
+
+/// Starts the chip anew and drives after a time: load cells that read the same for long are stuck.
+fn drive_later(chip: &mut Chip, after_ms: u64) -> Outcome {
     chip.reset(ResetFlag::Pin);
-    for _ in 0..60 {
+    for _ in 0..after_ms {
         vary_cells(chip);
         let end = chip.cycle() + MS;
         while chip.cycle() < end {
