@@ -335,7 +335,11 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Activity::Rearmed if defect.is_some_and(is_found_at_once) => REST_MM,
         Activity::RampingDown if defect.is_some() => ASIDE_MM,
         Activity::Rearmed if defect.is_some() => REARMED_MM,
-        Activity::Homing if defect == Some(Defect::SupplyDip) => HOMING_STOPS_MM,
+        Activity::Homing
+            if matches!(defect, Some(Defect::SupplyDip | Defect::HalfBridgeOpen(_))) =>
+        {
+            HOMING_STOPS_MM
+        }
         _ if activity.is_on_the_way() => WAY_MM,
         _ => REST_MM,
     };

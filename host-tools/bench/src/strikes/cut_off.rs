@@ -11,6 +11,11 @@ const WATCHED_S: f64 = 1.0;
 pub(super) const MORE: f64 = 0.1;
 pub(super) const MORE_MM: f64 = 0.5;
 
+/// The most that any such leg may do, as a part beyond its maximum tension and off its way, mm: 226.4 N of 150 N (`--seed 271129`, #10795) and 7.1 mm
+/// (`--seed 12001`, #3234) are known.
+pub(super) const CUT_OFF_BEYOND: f64 = 0.55;
+pub(super) const CUT_OFF_MM: f64 = 8.0;
+
 /// For how long a driver turns its motor in one direction alone, s: until its counter contradicts.
 const CONTRADICTED_S: f64 = 0.01;
 
@@ -51,12 +56,14 @@ impl CutOff {
         Ok(found)
     }
 
-    /// Bars, or what this leg does and a part more where that is wider.
-    pub fn widened(&self, bars: StrikeBars) -> StrikeBars {
+    /// Bars, or what this leg does and a part more where that is wider, within what any may do.
+    pub fn widened(&self, bars: StrikeBars, f_max_n: f64) -> StrikeBars {
         let part = 1.0 + MORE;
+        let tension_n = (part * self.tension_n).min(f_max_n * (1.0 + CUT_OFF_BEYOND));
+        let tip_mm = (part * self.tip_mm + MORE_MM).min(CUT_OFF_MM);
         StrikeBars {
-            tension_n: bars.tension_n.max(part * self.tension_n),
-            tip_mm: bars.tip_mm.max(part * self.tip_mm + MORE_MM),
+            tension_n: bars.tension_n.max(tension_n),
+            tip_mm: bars.tip_mm.max(tip_mm),
             ..bars
         }
     }
@@ -72,5 +79,30 @@ const fn stops_by_itself(defect: Defect) -> (Option<Defect>, f64) {
         // A motor whose tendon seems to be at the maximum tension at once is stopped.
         Defect::CellGainStep(i) | Defect::CellOffsetStep(i) => (Some(Defect::MotorJammed(i)), 0.0),
         _ => (None, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strikes::activity::Activity;
+
+    /// What is wider than the bars widens them, by no more than any such leg may do.
+    #[test]
+    fn the_bars_of_a_leg_that_is_cut_off_have_a_ceiling() {
+        let bars = StrikeBars::widest(Defect::MotorJammed(0), Activity::Moving, 150.0, false);
+        for (tension_n, tip_mm, expected) in [
+            (100.0, 1.0, [165.0, 3.0]),
+            (200.0, 6.0, [220.0, 7.1]),
+            (230.0, 9.0, [232.5, 8.0]),
+        ] {
+            let cut_off = CutOff { tension_n, tip_mm };
+            let widened = cut_off.widened(bars, 150.0);
+            assert!(
+                (widened.tension_n - expected[0]).abs() < 1e-9,
+                "{widened:?}"
+            );
+            assert!((widened.tip_mm - expected[1]).abs() < 1e-9, "{widened:?}");
+        }
     }
 }

@@ -84,7 +84,7 @@ pub(super) fn strike(
         }
     }
     watch.struck.compare_shadow(&stand);
-    let bars = watch.struck.bars_by_cut_off(prepared, shown, bars);
+    let bars = watch.struck.bars_by_cut_off(prepared, shown, bars, f_max_n);
     watch.struck.judge(&bars, strike.defect.is_some());
     (watch.struck, watch.moments)
 }

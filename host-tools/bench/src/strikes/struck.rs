@@ -111,13 +111,14 @@ impl Struck {
         prepared: &PreparedLeg,
         defect: Option<Defect>,
         bars: StrikeBars,
+        f_max_n: f64,
     ) -> StrikeBars {
         let within = self.tension_n <= bars.tension_n && self.tip_mm <= bars.tip_mm;
         let Some(defect) = defect.filter(|_| bars.cut_off && !within) else {
             return bars;
         };
         match CutOff::new(prepared, defect) {
-            Ok(cut_off) => cut_off.widened(bars),
+            Ok(cut_off) => cut_off.widened(bars, f_max_n),
             Err(error) => {
                 self.failures.push(error);
                 bars

@@ -1,7 +1,7 @@
 //! The pages say the bars.
 
 use super::*;
-use crate::strikes::cut_off::{MORE, MORE_MM};
+use crate::strikes::cut_off::{CUT_OFF_BEYOND, CUT_OFF_MM, MORE, MORE_MM};
 use crate::strikes::naming::{DRIFTS_S, NAMED_S, WANDERS_S};
 
 #[test]
@@ -33,8 +33,12 @@ fn the_page_says_the_bars() {
         ),
         format!("{SWAPPED_MM} mm where two sensors"),
         format!("{:.0} % and {MORE_MM} mm in tip", 100.0 * MORE),
+        format!(
+            "never more than {:.0} % above the maximum tension and {CUT_OFF_MM} mm",
+            100.0 * CUT_OFF_BEYOND
+        ),
         format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
-        format!("{HOMING_STOPS_MM} mm where the supply dips then"),
+        format!("{HOMING_STOPS_MM} mm where the supply dips then or half of a bridge is open"),
         format!(
             "{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips, {SLIP_AGAIN_MM} mm where it is armed again with it"
         ),
@@ -59,7 +63,11 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
     let page = page.join(" ");
     let percent = |part: f64| format!("{:.0} %", 100.0 * part);
     for words in [
-        format!("no more than {} above what its speed", percent(MORE)),
+        format!(
+            "no more than {} above what its speed, its payload and the stretch of its tendons give one whose motors stop at once, and never more than {} above the maximum",
+            percent(MORE),
+            percent(CUT_OFF_BEYOND)
+        ),
         format!("catch it: up to {} more", percent(CUT_BEYOND)),
         format!("by it: up to {} above the maximum", percent(SWAPPED_BEYOND)),
         format!(
