@@ -18,12 +18,14 @@ use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::tcp_port::TcpPort;
 use leg_host::transport::Transport;
 #[cfg(target_os = "linux")]
-use leg_host::transport::can::{CanTransport, SocketCan};
+use leg_host::transport::can::{CanPort, CanTransport, SocketCan};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::transport::serial::{self, Serial};
 use leg_host::transport::tcp::{self, Tcp};
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+#[cfg(target_os = "linux")]
+use std::io;
 use std::net::Ipv4Addr;
 use std::path::PathBuf;
 use std::sync::mpsc::channel;
@@ -262,15 +264,25 @@ fn note_late(failure: &Failure) {
 
 #[cfg(target_os = "linux")]
 fn can(interface: &str, leg: LegAddress, purpose: Purpose) -> Result<Box<dyn Transport>, Failure> {
-    let transport = match purpose {
-        Purpose::Stop => {
-            SocketCan::open_urgent(interface, leg).map(|port| CanTransport::urgent_only(port, leg))
-        }
+    let openers = [SocketCan::open, SocketCan::open_urgent];
+    let link = can_link(interface, leg, purpose, openers);
+    Ok(Box::new(link.map_err(Failure::from_error)?))
+}
+
+/// The link to a leg by an interface, which is opened for this program alone, or beside the one that drives the leg.
+#[cfg(target_os = "linux")]
+fn can_link<P: CanPort>(
+    interface: &str,
+    leg: LegAddress,
+    purpose: Purpose,
+    [alone, beside]: [fn(&str, LegAddress) -> io::Result<P>; 2],
+) -> io::Result<CanTransport<P>> {
+    match purpose {
+        Purpose::Stop => beside(interface, leg).map(|port| CanTransport::urgent_only(port, leg)),
         Purpose::Use | Purpose::Calibrate => {
-            SocketCan::open(interface, leg).map(|port| CanTransport::new(port, leg))
+            alone(interface, leg).map(|port| CanTransport::new(port, leg))
         }
-    };
-    Ok(Box::new(transport.map_err(Failure::from_error)?))
+    }
 }
 
 #[cfg(not(target_os = "linux"))]
@@ -300,4 +312,52 @@ fn progress_text(telemetry: &Telemetry<f32>) -> String {
     let pose = pose_words(telemetry.pose);
     let state = description::state(telemetry.state);
     format!("{state}, {pose}, tensions {a:.0} {b:.0} {c:.0} N")
+}
+
+#[cfg(all(test, target_os = "linux"))]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Purpose, can_link};
+    use leg_firmware::can::{CanFrame, Identifier, LegAddress};
+    use leg_host::transport::Transport;
+    use leg_host::transport::can::CanPort;
+    use std::io;
+    use std::time::Duration;
+
+    /// A port with the name of how it was opened, that tells by an error what it was handed.
+    struct TellingPort(&'static str);
+
+    impl CanPort for TellingPort {
+        fn name(&self) -> &str {
+            self.0
+        }
+
+        fn send(&mut self, frame: &CanFrame) -> io::Result<()> {
+            Err(io::Error::other(format!("{:?}", frame.identifier())))
+        }
+
+        fn receive(&mut self, _: Duration) -> io::Result<CanFrame> {
+            Err(io::ErrorKind::TimedOut.into())
+        }
+    }
+
+    /// The program that drives the leg has its ordinary identifier.
+    #[test]
+    fn a_stop_alone_goes_beside_the_program_that_drives_a_leg_on_can() {
+        let leg = LegAddress::ALL[2];
+        for (purpose, opened, identifier) in [
+            (Purpose::Stop, "beside", Identifier::Urgent(leg)),
+            (Purpose::Use, "alone", Identifier::ToLeg(leg)),
+            (Purpose::Calibrate, "alone", Identifier::ToLeg(leg)),
+        ] {
+            let openers = [
+                |_: &str, _: LegAddress| Ok(TellingPort("alone")),
+                |_: &str, _: LegAddress| Ok(TellingPort("beside")),
+            ];
+            let mut link = can_link("can0", leg, purpose, openers).unwrap();
+            assert_eq!(link.name(), format!("{opened}, {leg}"));
+            let sent = link.send(&[1, 0]).unwrap_err().to_string();
+            assert_eq!(sent, format!("{identifier:?}"), "{purpose:?}");
+        }
+    }
 }

@@ -339,12 +339,27 @@ def lost(served, page):
     print(f"`leg ui` has ended: {leg['failure']}")
 
 
+# Counts how often the page shows its leg life, while it is hidden and otherwise, and how often it is hidden.
+COUNTED = """
+const shown = wasm_bindgen.LegWindow.prototype, show_life = shown.show_life;
+const counts = window.counts = {hidden: 0, seen: 0, life_of_hidden: 0};
+document.addEventListener("visibilitychange", () => { counts.hidden += document.hidden; });
+shown.show_life = function (now_s) {
+  counts[document.hidden ? "life_of_hidden" : "seen"] += 1;
+  return show_life.call(this, now_s);
+};
+"""
+
+
 def hidden(page):
-    """A page behind another one falls silent, and its leg is held."""
+    """A page behind another one falls silent at once, not only once it stands still, and its leg is held."""
     go_on(page)
+    page.browser.run(COUNTED)
     with page.browser.covered():
         time.sleep(HIDDEN_S)
-    leg = page.wait_leg("is held", lambda leg: leg["state"] == "held")
+    leg = page.wait_leg("is held", lambda leg: leg["state"] == "held", ANSWER_S)
+    counts = page.browser.run("return window.counts")
+    assert counts["hidden"] == 1 and counts["seen"] > 0 and counts["life_of_hidden"] == 0, counts
     assert leg["faults"] == ["no command"] and leg["drives"] == [True, False], leg
     print("a hidden page falls silent: the leg is held")
     go_on(page)

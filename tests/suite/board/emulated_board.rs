@@ -18,6 +18,7 @@ mod terminal;
 use crate::common::stalls::wait_for;
 use board::{BoardUnderTest, IMPATIENT, SLOW, errors, move_to, signal};
 use serde_json::Value;
+use std::process::Command;
 use std::time::Instant;
 
 #[test]
@@ -56,6 +57,19 @@ fn stop_is_obeyed_while_another_command_drives() {
         errors(&output)
     );
     assert!(tilt < 28.0, "stopped on the way: {tilt}");
+}
+
+/// What opens a leg for a stop opens it for nothing else: on CAN that would be refused beside a program that drives it, and a chip
+/// would be homed first.
+#[test]
+fn a_stop_is_all_that_a_stop_opens_a_leg_for() {
+    let mut stop = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
+    let output = stop.args(["stop", "--on", "chip", "--json"]).output();
+    let output = output.unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    let stopped: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(stopped["state"], "disarmed");
+    assert_eq!(stopped["homed"], false);
 }
 
 #[test]

@@ -53,6 +53,22 @@ fn every_test_that_the_page_quotes_is_there() {
     }
 }
 
+/// What a browser shows is quoted with its file: CI runs that, and it runs what is quoted.
+#[test]
+fn what_the_page_quotes_of_a_browser_is_run() {
+    let page = page();
+    let (_, name) = page.split_once("a hidden page: `").unwrap();
+    let (name, rest) = name.split_once("` in `").unwrap();
+    let (file, _) = rest.split_once('`').unwrap();
+    let source = fs::read_to_string(workspace_root().join(file)).unwrap();
+    let (_, main) = source.split_once("\ndef main():\n").unwrap();
+    assert!(source.contains(&format!("\ndef {name}(page):\n")));
+    assert!(main.contains(&format!("\n        {name}(page)\n")));
+    let runs = fs::read_to_string(workspace_root().join("host-tools/window/test.sh")).unwrap();
+    let (_, file) = file.split_once("window/").unwrap();
+    assert!(runs.contains(&format!("\npython3 {file} ")));
+}
+
 /// Each row of the tables, each point and each paragraph that says what the leg does.
 #[test]
 fn every_promise_of_the_page_quotes_what_shows_it() {

@@ -67,7 +67,11 @@ impl BoardUnderTest {
 
     /// Begins a move and waits until the leg is on its way.
     pub fn begin_move(&self) -> Child {
-        let mut moving = self.begin(&move_to("29"));
+        self.wait_until_moving(self.begin(&move_to("29")))
+    }
+
+    /// Waits until a move has the leg on its way.
+    pub fn wait_until_moving(&self, mut moving: Child) -> Child {
         let begun = Instant::now();
         while self.state()["moving"] != true {
             if begun.elapsed() > PATIENCE || moving.try_wait().unwrap().is_some() {

@@ -1,10 +1,12 @@
 //! The port, and who shares it.
 
-use super::board::{BoardUnderTest, errors, signal};
+use super::board::{BoardUnderTest, IMPATIENT, SLOW, errors, signal};
 use serde_json::Value;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::process::Child;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 #[test]
 fn a_monitor_goes_on_when_the_command_that_had_the_port_ends() {
@@ -71,18 +73,39 @@ fn a_suspended_command_that_has_the_port_is_named() {
     let mut next = printed(&mut first);
     next();
     signal(&first, "-STOP");
+    let begun = Instant::now();
     let (code, told) = board.refused(&["stop"]);
+    let took = begun.elapsed();
     signal(&first, "-CONT");
     assert_eq!(code, Some(2));
     assert!(
         told.contains("another `leg` has the port") && told.contains("resume or end it"),
         "{told}"
     );
-    // It is said early, too.
-    assert!(told.contains("tried again"), "{told}");
+    // It is said every two seconds, and given up after ten; a busy machine takes longer.
+    assert_eq!(told.matches("tried again").count(), 4, "{told}");
+    let given_up = Duration::from_secs(10);
+    assert!((given_up..2 * given_up).contains(&took), "{took:?}");
     assert_eq!(board.json(&["stop"])["state"], "disarmed");
     first.kill().unwrap();
     first.wait().unwrap();
+}
+
+#[test]
+fn a_move_that_is_suspended_leaves_the_leg_in_hold() {
+    let board = BoardUnderTest::with_sections(&[IMPATIENT, SLOW].concat(), &[]);
+    let moving = board.begin_move();
+    signal(&moving, "-STOP");
+    // It has the port, so that nobody sees the leg before it goes on: by then the leg has waited for a command for too long.
+    sleep(Duration::from_secs(7));
+    signal(&moving, "-CONT");
+    let output = moving.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = errors(&output);
+    assert!(told.contains("fault 20, no command"), "{told}");
+    let state = board.state();
+    assert_eq!(state["state"], "held");
+    assert!(state["tilt_deg"].as_f64().unwrap() < 28.0, "{state}");
 }
 
 #[test]

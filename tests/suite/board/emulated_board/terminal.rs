@@ -1,24 +1,25 @@
 //! The screen of `leg monitor` and its terminal.
 
-use super::board::{BoardUnderTest, signal};
+use super::board::{BoardUnderTest, move_to, signal};
 use crate::common::stalls::{PATIENCE, wait_for};
 use leg_host::pseudo_terminal::PseudoTerminal;
-use std::fs::OpenOptions;
-use std::process::{Child, Stdio};
+use serde_json::Value;
+use std::fs::{File, OpenOptions};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+
+/// The end of a terminal that a program has.
+fn end(terminal: &PseudoTerminal) -> File {
+    let mut options = OpenOptions::new();
+    let options = options.read(true).write(true);
+    options.open(terminal.path()).unwrap()
+}
 
 /// A monitor on a terminal, once it shows its screen.
 fn monitor(board: &BoardUnderTest) -> (Child, PseudoTerminal) {
     let terminal = PseudoTerminal::open().unwrap();
-    let end = || {
-        let path = terminal.path();
-        OpenOptions::new()
-            .read(true)
-            .write(true)
-            .open(path)
-            .unwrap()
-    };
+    let end = || end(&terminal);
     let mut command = board.command(&["monitor"]);
     command.stdin(end()).stdout(end()).stderr(Stdio::null());
     let monitor = command.spawn().unwrap();
@@ -68,4 +69,23 @@ fn a_monitor_ends_with_its_terminal_a_key_or_a_signal_and_lets_the_port_go() {
         assert_eq!(ended(running, Some(&terminal)), Some(0), "{name}");
     }
     assert_eq!(board.json(&["stop"])["state"], "disarmed");
+}
+
+#[test]
+fn a_move_whose_terminal_goes_leaves_the_leg_in_hold_without_a_fault() {
+    let board = BoardUnderTest::slow();
+    let terminal = PseudoTerminal::open().unwrap();
+    let mut command = board.command(&move_to("29"));
+    for stream in [Command::stdin, Command::stdout, Command::stderr] {
+        stream(&mut command, end(&terminal));
+    }
+    let moving = board.wait_until_moving(command.spawn().unwrap());
+    drop(terminal);
+    // As the system tells those whom a terminal controls. They can say nothing any more.
+    signal(&moving, "-HUP");
+    assert_eq!(ended(moving, None), Some(1));
+    let state = board.state();
+    assert_eq!(state["state"], "held");
+    assert_eq!(state["faults"], Value::Array(vec![]));
+    assert!(state["tilt_deg"].as_f64().unwrap() < 28.0, "{state}");
 }
