@@ -75,6 +75,7 @@ mod sim {
     mod load_left_out;
     mod lost_numbers;
     mod move_times;
+    mod other_answers;
     mod ramped_pretension;
     mod random_scenarios;
     pub mod ready_runs;
@@ -83,6 +84,8 @@ mod sim {
     mod scenarios;
     mod station;
     mod station_defects;
+    mod station_rigs;
+    mod station_ring_down;
     pub mod station_stand;
     mod stiffness_floor;
     mod streamed_tension;
@@ -90,6 +93,7 @@ mod sim {
     mod swing;
     mod tension_limits;
     mod tensioning;
+    mod unstable_loop;
     mod ways_down;
 }
 

@@ -3,10 +3,12 @@
 mod bars;
 mod chart;
 mod drawn_move;
+mod duration;
 mod reference;
 
 pub use chart::save_comparison;
 pub use drawn_move::DrawnMove;
+pub use duration::longest_s;
 
 use crate::draw::CURVE;
 use crate::stand::{self, Stand};

@@ -41,7 +41,7 @@ pub struct Stand {
 
 impl Stand {
     /// A leg that has just started. Its ticks fail once the control law in f64 beside it has been in another state, or had other faults,
-    /// for more than [`OTHER_TICKS_MAX`] in a row.
+    /// for more than [`OTHER_TICKS_MAX`] in a row, or has answered the host otherwise.
     ///
     /// # Errors
     /// Settings or a start that are refused, as all errors here in words.
@@ -91,11 +91,17 @@ impl Stand {
     }
 
     /// # Errors
-    /// The control law in f64 was in another state, or had other faults, for more than so many ticks in a row.
+    /// The control law in f64 was in another state, or had other faults, for more than so many ticks in a row, or refused what the firmware did.
     pub fn require_shadow(&self, other_ticks: u64) -> Result<(), String> {
         let divergence = &self.shadow.divergence;
         if divergence.stays_within(other_ticks) {
             return Ok(());
+        }
+        if divergence.states_stay_within(other_ticks) {
+            return Err(format!(
+                "the firmware answers its host otherwise than its shadow in f64, {} times",
+                divergence.other_answers
+            ));
         }
         Err(format!(
             "the firmware leaves the state of its shadow in f64, first at tick {}",

@@ -163,6 +163,12 @@ fn require_passed(summary: &Summary) -> Result<(), Failure> {
     let failed = summary.measurements.iter().filter(|found| !found.passes());
     let mut names: Vec<_> = failed.map(|found| found.name.as_str()).collect();
     names.extend(summary.unexpected.iter().map(|fault| fault.entry().name));
+    if names.is_empty() && summary.divergence.other_answers > 0 {
+        return Err(Failure::failed(
+            "the control law in f64 answered a command otherwise than the firmware",
+            "rounding decides there: find the command that is at a limit, or an error in the law; keep a recording with --record",
+        ));
+    }
     if names.is_empty() {
         let first = summary.divergence.first_other_tick.unwrap_or_default();
         return Err(Failure::failed(

@@ -124,15 +124,21 @@ impl Answers {
 }
 
 impl Divergence {
-    /// Whether the two came to the same states and faults.
+    /// Whether the two came to the same states and faults, and answered alike.
     #[must_use]
     pub const fn stays(&self) -> bool {
         self.stays_within(OTHER_TICKS_MAX)
     }
 
-    /// The same with so many ticks in a row in which they may differ.
+    /// The same with so many ticks in a row in which they may be in another state or have other faults.
     #[must_use]
     pub const fn stays_within(&self, other_ticks: u64) -> bool {
+        self.other_answers == 0 && self.states_stay_within(other_ticks)
+    }
+
+    /// The same, whatever they answer: of a run that ends with the first request which one of the two refuses.
+    #[must_use]
+    pub const fn states_stay_within(&self, other_ticks: u64) -> bool {
         self.longest_other_ticks <= other_ticks
     }
 

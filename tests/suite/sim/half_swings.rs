@@ -23,10 +23,10 @@ const LEFT_OUT_S: f64 = 2.0;
 
 /// The true tensions within which a leg rings down by its brake, N: below them a tendon is slack, and in the last 4 N below the maximum of
 /// 150 N a motor is slowed down.
-const WITHIN_N: std::ops::Range<f64> = 2.0..146.0;
+pub const WITHIN_N: std::ops::Range<f64> = 2.0..146.0;
 
 /// Half swings of a tip along the direction in which it goes farthest from where it ends: time, s, and size, m.
-fn half_swings(tips_m: &[Vector3<f64>]) -> Vec<(f64, f64)> {
+pub fn half_swings(tips_m: &[Vector3<f64>]) -> Vec<(f64, f64)> {
     let end_m = tips_m[tips_m.len() - 1];
     let farthest = |a: &Vector3<f64>, b: &Vector3<f64>| a.norm().total_cmp(&b.norm());
     let axis = tips_m.iter().map(|tip| tip - end_m).max_by(farthest);
@@ -55,7 +55,7 @@ fn half_swings(tips_m: &[Vector3<f64>]) -> Vec<(f64, f64)> {
 
 /// Half swings from the largest one: before it the leg still comes back from what it has given way to. Of a leg with a first mode, Hz; none of
 /// it are those of a leg that creeps to where its load is compensated, and the largest takes no time where it is such a one.
-fn swings_of_mode(halves: &[(f64, f64)], mode_hz: f64) -> Vec<(f64, f64)> {
+pub fn swings_of_mode(halves: &[(f64, f64)], mode_hz: f64) -> Vec<(f64, f64)> {
     let longest_s = CREEP * 0.5 / mode_hz;
     let by_size = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
     let sizes = halves.iter().map(|half| half.1).enumerate();
@@ -79,7 +79,7 @@ pub struct RingDown {
 
 /// None without two half swings, or where the first is not twice as much as is counted: one of 0.11 mm before one of 10 µm would have a
 /// ratio of 0.03.
-fn ring_down(halves: &[(f64, f64)]) -> Option<RingDown> {
+pub fn ring_down(halves: &[(f64, f64)]) -> Option<RingDown> {
     let first_m = halves
         .first()
         .map(|half| half.1)

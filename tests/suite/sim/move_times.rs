@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, paper, pass};
+use leg_bench::moves::longest_s;
 use leg_bench::stand::move_to;
 use leg_model::evaluate;
 use leg_rig::rig_file::RigFile;
@@ -42,8 +43,12 @@ fn tip_m(rig: &RigFile, [azimuth_deg, tilt_deg]: [f64; 2]) -> Vector3<f64> {
 }
 
 /// Makes a move; the time until the leg says that it is over, s, and how far its tip is off the end then, mm.
-fn made(poses_deg: [[f64; 2]; 2], payload_kg: f64, seed: u64) -> (f64, f64) {
-    let mut rig = paper();
+fn made(
+    mut rig: RigFile,
+    poses_deg: [[f64; 2]; 2],
+    payload_kg: f64,
+    seed: u64,
+) -> (f64, f64) {
     rig.pretension_n = pretension_n(&rig, poses_deg, payload_kg);
     // As after homing.
     rig.plant.cell_offset_n = [0.0; 3];
@@ -70,11 +75,14 @@ fn a_move_of_the_simulated_leg_takes_no_longer_than_it_did() {
                 seed += 1;
                 let begin_deg = [azimuth_deg + 180.0, begin_tilt_deg];
                 let end_deg = [azimuth_deg, END_DEG];
-                let (found_s, off_mm) = made([begin_deg, end_deg], payload_kg, seed);
+                let (found_s, off_mm) = made(paper(), [begin_deg, end_deg], payload_kg, seed);
                 let what = format!(
                     "seed {seed}: {begin_deg:?} to {end_deg:?}, {payload_kg} kg: {found_s:.4} s, {off_mm:.3} mm"
                 );
-                println!("{what}");
+                let longest_s = longest_s(&paper().gains.motion, begin_deg, end_deg);
+                println!("{what}; at most {longest_s:.4} s");
+                // What the limits on its motion allow is no more than it took.
+                assert!(found_s <= longest_s && longest_s < time_s + ROUNDED_S, "{what}");
                 let bar_mm = if begin_tilt_deg == 0.0 {
                     HIDDEN_OFF_MM
                 } else {
@@ -85,4 +93,16 @@ fn a_move_of_the_simulated_leg_takes_no_longer_than_it_did() {
             }
         }
     }
+}
+
+/// One that is led by a hundredth more slowly than it may takes too long: the bound that follows from the limits can fail.
+#[test]
+fn a_move_that_is_led_more_slowly_than_its_limits_allow_takes_too_long() {
+    let poses_deg @ [begin_deg, end_deg] = [[180.0, END_DEG], [0.0, END_DEG]];
+    let mut slow = paper();
+    slow.gains.motion.speed_rad_per_s *= 0.99;
+    let (found_s, _) = made(slow, poses_deg, 1.0, 59);
+    let longest_s = longest_s(&paper().gains.motion, begin_deg, end_deg);
+    println!("seed 59: {found_s:.4} s, at most {longest_s:.4} s");
+    assert!(found_s > longest_s);
 }

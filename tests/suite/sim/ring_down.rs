@@ -18,17 +18,17 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
 
 /// What a tip may still swing in the end, from farthest to farthest, m.
-const REST_M: f64 = 6e-5;
+pub const REST_M: f64 = 6e-5;
 
 /// First mode, Hz, below which the ratio is asked for; above it the time to a tenth.
-const FAST_HZ: f64 = 8.0;
+pub const FAST_HZ: f64 = 8.0;
 
 /// The least damping ratio, and the longest time to a tenth, s.
-const RATIO: f64 = 0.2;
-const TENTH_S: f64 = 0.4;
+pub const RATIO: f64 = 0.2;
+pub const TENTH_S: f64 = 0.4;
 
 /// Time in which a payload is hung on, s.
-const LOADING_S: f64 = 0.05;
+pub const LOADING_S: f64 = 0.05;
 
 /// The part of the pushed, and of the loaded, that may leave the tensions within which a leg rings down: 5 N at the tip change a tension by up
 /// to 45 N at once, and any feasible pretension is drawn.
@@ -36,15 +36,15 @@ const LEFT_OUT_PARTS: [f64; 2] = [0.7, 0.2];
 
 /// A leg at rest.
 #[derive(Clone, Debug)]
-struct Leg {
+pub struct Leg {
     pose_deg: [f64; 2],
-    payload_kg: f64,
+    pub payload_kg: f64,
     pretension_n: f64,
 }
 
 impl Leg {
     /// Its first mode by the model with so much more payload, kg, Hz.
-    fn first_mode_hz(&self, rig: &RigFile, more_kg: f64) -> f64 {
+    pub fn first_mode_hz(&self, rig: &RigFile, more_kg: f64) -> f64 {
         let payload_kg = self.payload_kg + more_kg;
         let mut query = rig.query(self.pose_deg[0], self.pose_deg[1], payload_kg);
         query.pretension_n = self.pretension_n;
@@ -60,8 +60,8 @@ impl Leg {
 }
 
 /// The heaviest payload, and what is hung on beside it, kg.
-const PAYLOAD_MAX_KG: f64 = 2.0;
-const MORE_KG: f64 = 0.5;
+pub const PAYLOAD_MAX_KG: f64 = 2.0;
+pub const MORE_KG: f64 = 0.5;
 
 /// How far from the lowest and the highest pretension that the pose allows with either payload, N. What the estimate of the load is off by
 /// shall not end a feasible one, and no tendon is pulled by more than 4 N below its maximum. Of 600 legs of the paper's rig two that are
@@ -69,7 +69,7 @@ const MORE_KG: f64 = 0.5;
 const ROOM_N: [f64; 2] = [4.0, 5.0];
 
 /// A leg that follows commands at rest, at a pose with a payload and a pretension that are drawn.
-fn drawn(rig: &RigFile, rng: &mut Rng) -> (Stand, Leg) {
+pub fn drawn(rig: &RigFile, rng: &mut Rng) -> (Stand, Leg) {
     loop {
         let tilt_max_deg = rig.tilt_deg.min(30.0);
         let pose_deg @ [azimuth_deg, tilt_deg] = [360.0 * rng.f64(), tilt_max_deg * rng.f64()];

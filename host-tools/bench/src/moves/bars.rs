@@ -55,12 +55,17 @@ impl MoveBars {
             ("settled after", moved.settled_s, self.settled_s, "s"),
             ("at rest off by", moved.rest_mm, self.rest_mm, "mm"),
         ];
-        beyond
+        let mut failures: Vec<_> = beyond
             .into_iter()
             .filter(|(_, value, bar, _)| value > bar)
             .map(|(what, value, bar, unit)| {
                 format!("{what} {value:.2} {unit}, more than {bar} {unit}")
             })
-            .collect()
+            .collect();
+        let (took_s, longest_s) = (moved.took_s, moved.drawn.longest_s());
+        if took_s > longest_s {
+            failures.push(format!("took {took_s:.4} s, more than {longest_s:.4} s"));
+        }
+        failures
     }
 }

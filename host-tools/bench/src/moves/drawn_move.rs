@@ -1,5 +1,6 @@
 //! A move that is drawn from the seed and its number.
 
+use super::duration::longest_s;
 use crate::draw::{PAYLOAD_KG, distance, drawn, feasible, homed, numbered, pose};
 use fastrand::Rng;
 use leg_base::angles;
@@ -80,6 +81,12 @@ impl DrawnMove {
         let mut same = self.clone();
         same.file.gains.motion.damping_ratio = 0.0;
         same
+    }
+
+    /// The longest that it may take by the limits on its motion, s.
+    #[must_use]
+    pub fn longest_s(&self) -> f64 {
+        longest_s(&self.file.gains.motion, self.begin_deg, self.end_deg)
     }
 
     pub(super) fn tip_length_m(&self) -> f64 {

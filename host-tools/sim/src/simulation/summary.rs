@@ -116,7 +116,7 @@ impl SimulationError {
 
 impl Summary {
     /// Whether it came to its end, every value is where it must be, no fault came that is not expected, and the shadow in f64
-    /// stayed in the firmware's state.
+    /// stayed in the firmware's state and answered as it did.
     #[must_use]
     pub fn passes(&self) -> bool {
         self.stopped.is_none()
