@@ -20,7 +20,9 @@ fn made(campaign: &MoveCampaign, numbers: Range<u64>) -> Vec<Moved> {
     println!("seed {}, {numbers:?} of {names:?}", campaign.seed);
     let moved = campaign.run(numbers, || ());
     assert_eq!(moved.len() as u64, count, "some were not made");
-    let spare_s = moved.iter().map(|moved| moved.drawn.longest_s() - moved.took_s);
+    let spare_s = moved
+        .iter()
+        .map(|moved| moved.drawn.longest_s() - moved.took_s);
     let least_s = spare_s.fold(f64::INFINITY, f64::min);
     println!("all made at least {least_s:.4} s sooner than the limits on their motion allow");
     moved

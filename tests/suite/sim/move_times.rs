@@ -43,12 +43,7 @@ fn tip_m(rig: &RigFile, [azimuth_deg, tilt_deg]: [f64; 2]) -> Vector3<f64> {
 }
 
 /// Makes a move; the time until the leg says that it is over, s, and how far its tip is off the end then, mm.
-fn made(
-    mut rig: RigFile,
-    poses_deg: [[f64; 2]; 2],
-    payload_kg: f64,
-    seed: u64,
-) -> (f64, f64) {
+fn made(mut rig: RigFile, poses_deg: [[f64; 2]; 2], payload_kg: f64, seed: u64) -> (f64, f64) {
     rig.pretension_n = pretension_n(&rig, poses_deg, payload_kg);
     // As after homing.
     rig.plant.cell_offset_n = [0.0; 3];
@@ -82,7 +77,10 @@ fn a_move_of_the_simulated_leg_takes_no_longer_than_it_did() {
                 let longest_s = longest_s(&paper().gains.motion, begin_deg, end_deg);
                 println!("{what}; at most {longest_s:.4} s");
                 // What the limits on its motion allow is no more than it took.
-                assert!(found_s <= longest_s && longest_s < time_s + ROUNDED_S, "{what}");
+                assert!(
+                    found_s <= longest_s && longest_s < time_s + ROUNDED_S,
+                    "{what}"
+                );
                 let bar_mm = if begin_tilt_deg == 0.0 {
                     HIDDEN_OFF_MM
                 } else {

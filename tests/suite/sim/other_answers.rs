@@ -18,8 +18,7 @@ use leg_sim::shadow::{Divergence, Shadow};
 fn asked(leg: &Command, shadow: &Command) -> Divergence {
     let rig = paper();
     let start = Start::hanging(rig.pretension_n);
-    let (emulated, mut beside) =
-        EmulatedLeg::start_shadowed(&rig, &rig.plant, start, 1).unwrap();
+    let (emulated, mut beside) = EmulatedLeg::start_shadowed(&rig, &rig.plant, start, 1).unwrap();
     let mut hosted: HostedLeg = HostedLeg::new(emulated, &rig, [0.0; 2], 1);
     let pass = |hosted: &mut HostedLeg, beside: &mut Shadow, ticks: u32| {
         for _ in 0..ticks {

@@ -10,7 +10,7 @@ use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_sim::plant::Start;
 
 /// The fastest that it corrects, mm/s at the tip.
-const FASTEST_MM_PER_S: f64 = 2.1;
+pub const FASTEST_MM_PER_S: f64 = 2.1;
 
 /// Mean of the sums of the duties, and the part of the ticks in which a motor is driven.
 fn driven(bench: &mut Stand, time_s: f64) -> [f64; 2] {
