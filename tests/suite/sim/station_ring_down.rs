@@ -58,7 +58,7 @@ impl Watched {
         }
         let rings = |tips_m: &[_]| ring_down(&swings_of_mode(&half_swings(tips_m), mode_hz));
         let begins = ticks(for_s) as usize;
-        let swings_m = without_creep(&tips_m, ticks(for_s), mode_hz);
+        let swings_m = creep_removed(&tips_m, ticks(for_s), mode_hz);
         let last_m = half_swings(&tips_m[tips_m.len() - ticks(RESTING_S) as usize..]);
         Self {
             left_out,
@@ -75,7 +75,7 @@ impl Watched {
 
 /// How a tip swings about its mean over a period of its first mode, from half a period after the disturbance on: a correction that goes on at
 /// its speed is in that mean, and what is left of a swing that decays decays as it does.
-fn without_creep(tips_m: &[Vector3<f64>], begins: u64, mode_hz: f64) -> Vec<Vector3<f64>> {
+fn creep_removed(tips_m: &[Vector3<f64>], begins: u64, mode_hz: f64) -> Vec<Vector3<f64>> {
     let half = ticks(0.5 / mode_hz) as usize;
     let mut sums_m = vec![Vector3::zeros()];
     for tip_m in tips_m {
@@ -174,11 +174,11 @@ fn a_leg_with_another_support_that_keeps_station_rings_down() {
     }
 }
 
-/// Without the brake the ratios are below 0.05, and each pushed leg is beyond a bar or reaches a limit of its tensions: the bars can fail.
+/// Without the brake the ratios are below 0.05, and three of four pushed legs come back too late, or ring on: the bars can fail.
 #[test]
 fn a_leg_that_keeps_station_without_a_brake_rings_on() {
     let mut rig = paper();
     rig.gains.motion.damping_ratio = 0.0;
     let (failed, measured) = failures("no brake", &rig, 17, 4);
-    assert!(measured > 0 && failed.len() == 1, "{failed:#?}");
+    assert!(measured > 0 && failed.len() >= 3, "{failed:#?}");
 }

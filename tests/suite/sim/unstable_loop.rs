@@ -234,7 +234,7 @@ fn a_swing_that_late_load_cells_drive_ends_in_hold() {
         }
         // With sound cells it rings down.
         let swing = sound.swung(Activity::Resting, 0, 3.0);
-        assert!(swing.after_s.is_none() && swing.last_mm < 0.01, "{swing:?}");
+        assert!(swing.after_s.is_none() && swing.last_mm < 0.02, "{swing:?}");
     }
 }
 
@@ -264,18 +264,19 @@ fn a_swing_of_a_leg_with_wrong_settings_ends_in_hold() {
     }
 }
 
-/// A swing that grows faster takes a tendon to the maximum tension before it is named, where two of three poses are so at 40 ms: **too much tension**
-/// ramps the leg down, which is no hold.
+/// A swing that grows faster takes a tendon to the maximum tension before it is named: **too much tension** ramps the leg down, which is no
+/// hold.
 #[test]
 fn a_swing_that_grows_faster_ends_by_the_maximum_tension() {
+    const LATE_MS: usize = 60;
     for pose in POSES {
-        for (activity, ms) in [
-            (Activity::Resting, 60),
-            (Activity::KeepingStation, 60),
-            (Activity::Streaming, 60),
+        for activity in [
+            Activity::Resting,
+            Activity::KeepingStation,
+            Activity::Streaming,
         ] {
-            let swing = Leg::paper(pose).swung(activity, 8 * ms, 4.0);
-            println!("{ms} ms late, {activity:?}, {pose:?}: {swing:.3?}");
+            let swing = Leg::paper(pose).swung(activity, 8 * LATE_MS, 4.0);
+            println!("{LATE_MS} ms late, {activity:?}, {pose:?}: {swing:.3?}");
             assert!(
                 swing.after_s.is_some_and(|after_s| after_s < 1.0),
                 "{swing:?}"
