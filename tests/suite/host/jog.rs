@@ -11,6 +11,7 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::jog_report::{findings, slow_voltage_v};
 use leg_host::operator::{HostIdentity, Operator};
 use leg_host::transport::emulated::EmulatedLine;
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use leg_sim::link::InProcess;
@@ -18,8 +19,11 @@ use leg_sim::plant::Defect;
 
 /// The paper's leg with a few more lines in its rig file, and its host.
 fn leg(initial: InitialState) -> (EmulatedLine, Operator) {
-    let rig = RigFile::load(None).unwrap();
-    let leg = EmulatedLeg::new(&rig, initial, Box::new(InProcess::new())).unwrap();
+    leg_of(&RigFile::load(None).unwrap(), initial)
+}
+
+fn leg_of(rig: &RigFile, initial: InitialState) -> (EmulatedLine, Operator) {
+    let leg = EmulatedLeg::new(rig, initial, Box::new(InProcess::new())).unwrap();
     let line = EmulatedLine::new(leg, "the leg");
     let host = Box::new(line.connect());
     let operator = Operator::open(host, HostIdentity::FIXED, CancelFlag::default()).unwrap();
@@ -283,6 +287,30 @@ fn without_its_load_cell_the_current_ends_a_jog() {
     assert_eq!(report.end, JogEnd::Current, "{report:?}");
     assert_eq!(telemetry.state, State::Disarmed);
     let tension_n = line.with_plant(|plant| plant.truth().tensions_n[0]);
+    assert!(tension_n < 80.0, "{tension_n}");
+}
+
+/// An output that is silent at the voltage of the jog: what that drives by resistance and counts ends it.
+#[test]
+fn without_its_load_cell_the_current_ends_a_jog_at_an_output_that_is_silent() {
+    let more = "[actuator]\ncurrent_output = \"magnitude_when_driven\"\n";
+    let rig = RigFile::parse("silent", &[READY_RIGS[0].text, more].concat()).unwrap();
+    let (line, mut operator) = leg_of(&rig, InitialState::Homed);
+    let mut settings = operator.settings().unwrap();
+    for axis in &mut settings.axes {
+        axis.cell_n_per_code *= 0.01;
+    }
+    operator.set_settings(&settings).unwrap();
+    // A tenth of the supply is 2.4 V.
+    let demand = JogDemand {
+        drive: JogDrive::Voltage(2.3),
+        ..demand(&mut operator, 1, 10.0)
+    };
+    let (report, telemetry) = operator.jog(&demand).unwrap();
+    let tension_n = line.with_plant(|plant| plant.truth().tensions_n[0]);
+    let ends = [JogEnd::Current, JogEnd::NoCounts];
+    assert!(ends.contains(&report.end), "{report:?}");
+    assert_eq!(telemetry.state, State::Disarmed);
     assert!(tension_n < 80.0, "{tension_n}");
 }
 

@@ -7,7 +7,7 @@ use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_rig::rig_file::RigFile;
-use leg_sim::plant::Defect;
+use leg_sim::plant::{Defect, Start};
 use nalgebra::Vector3;
 
 /// How little the tip of a leg moves that stands still, mm: its estimates' noise moves nothing.
@@ -184,6 +184,43 @@ fn a_held_leg_that_is_overloaded_is_ramped_down() {
             }
         }
     }
+}
+
+/// A cell that drifts so slowly that a leg at rest would learn it as creep, 0.2 N/s, comes to show more than a tenth above the maximum. The control law in f64
+/// finds it some milliseconds sooner or later.
+#[test]
+fn a_held_leg_is_not_let_down_by_a_cell_that_drifts_slowly() {
+    let mut rig = paper();
+    rig.pretension_n = 130.0;
+    let start = Start::Held {
+        azimuth_deg: 60.0,
+        tilt_deg: 3.0,
+        pretension_n: rig.pretension_n,
+        payload_kg: 0.0,
+    };
+    let mut stand = Stand::unjudged(&rig, &rig.plant, start, 81).unwrap();
+    stand.wait(0.1).unwrap();
+    stand.command(&Command::Arm).unwrap();
+    stand.wait(2.0).unwrap();
+    stand.command(&Command::Stop).unwrap();
+    pass(&mut stand, 0.5);
+    let standing = Standing::new(&stand);
+    let mut shown_n = 0.0;
+    // The defect drifts by 5 N/s: for one tick of 25.
+    for _ in 0..ticks(250.0) / 25 {
+        stand.plant().set_defect(Defect::CellDrifting(0), true);
+        standing.tick(&mut stand);
+        stand.plant().set_defect(Defect::CellDrifting(0), false);
+        for _ in 1..25 {
+            standing.tick(&mut stand);
+        }
+        shown_n = stand.telemetry.unwrap().tensions_n[0].into();
+        if shown_n > 1.12 * rig.f_max_n {
+            break;
+        }
+    }
+    assert!(shown_n > 1.12 * rig.f_max_n, "{shown_n} N");
+    assert_eq!(faults(&stand), FaultSet::single(Fault::Residual));
 }
 
 /// So is one that is pushed for a short time, or was stopped on its way, and swings: whatever is named, nothing is said of its sensors.

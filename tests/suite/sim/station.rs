@@ -184,6 +184,34 @@ fn a_station_with_a_load_that_no_tensions_hold_is_held() {
     );
 }
 
+/// A payload grows until no tensions within the bounds hold it: up to then the leg is asked for nothing nearer to the maximum than 4 N.
+#[test]
+fn a_station_takes_no_tension_within_four_newtons_of_the_maximum() {
+    const NEWTONS: f32 = 4.0;
+    let rig = paper();
+    let mut bench = keeping(&rig, [40.0, 28.0], 0.5, 55);
+    bench.plant().set_payload(3.5, 20.0);
+    let mut highest_n = 0.0_f32;
+    for _ in 0..ticks(22.0) {
+        bench.tick().unwrap();
+        if bench.state() != State::KeepingStation {
+            break;
+        }
+        let asked_n = bench.telemetry.unwrap().target_tensions_n;
+        highest_n = asked_n.into_iter().fold(highest_n, f32::max);
+    }
+    assert_eq!(bench.state(), State::Held);
+    let below_n = rig.f_max_n as f32 - highest_n;
+    assert!(
+        (NEWTONS - 0.1..NEWTONS + 0.5).contains(&below_n),
+        "{below_n} N"
+    );
+    require_said(
+        "firmware/SAFETY.md",
+        &[format!("{NEWTONS} N below the maximum tension")],
+    );
+}
+
 /// A hand pushes for a minute: the leg comes back under it, and comes back when it is gone.
 #[test]
 fn a_push_for_a_minute_is_compensated() {

@@ -236,6 +236,32 @@ fn a_leg_that_is_sent_away_is_not_measured() {
     assert_eq!(elongation_factor(&stand), 1.0);
 }
 
+/// Nor is one that was stopped before, and goes on after a clear or is armed again.
+#[test]
+fn a_leg_that_was_stopped_before_is_not_measured() {
+    let rig = RigFile::load(None).unwrap();
+    let plant = PlantSettings {
+        curve_error: 0.04,
+        ..rig.plant
+    };
+    for again in [Command::Clear, Command::Disarm] {
+        let mut stand = homed(&rig, plant);
+        stand.command(&Command::Stop).unwrap();
+        pass(&mut stand, 0.5);
+        assert_eq!(stand.state(), State::Held);
+        stand.command(&again).unwrap();
+        pass(&mut stand, 0.1);
+        if again == Command::Disarm {
+            stand.wait(6.0).unwrap();
+            assert_eq!(stand.state(), State::Disarmed);
+            stand.command(&Command::Arm).unwrap();
+        }
+        stand.wait(TENSIONED_S).unwrap();
+        assert_eq!(stand.state(), State::Active, "{:?}", stand.faults());
+        assert_eq!(elongation_factor(&stand), 1.0, "{again:?}");
+    }
+}
+
 /// Nor is one whose load is not estimated.
 #[test]
 fn a_leg_that_does_not_estimate_its_load_is_not_measured() {

@@ -336,4 +336,27 @@ mod tests {
         }
         assert_eq!(fed_part(5.0, 1.0), 1.0, "a motor on its way");
     }
+
+    /// What a leg that is held goes on with: after a late tick a motor seems to be faster than it was led, and at the maximum tension it stays behind.
+    #[test]
+    fn a_motor_goes_on_by_its_speed_and_no_farther_than_it_is_led() {
+        let [servo, ..] = Settings::table_1().unwrap().servos;
+        for sign in [1.0, -1.0] {
+            for (goes_m, led_m, expected_m) in [
+                (1e-6, 1e-6, 1e-6),
+                (5e-7, 1e-6, 5e-7),
+                (4e-6, 1e-6, 1e-6),
+                (4e-6, 0.0, 0.0),
+                (-4e-6, 1e-6, -1e-6),
+            ] {
+                let mut axis = Axis::<f64>::new(&servo);
+                for tick in 0..2000 {
+                    axis.track(sign * goes_m * f64::from(tick));
+                }
+                axis.lead_by(sign * led_m);
+                let off_m = axis.moved_m() - sign * expected_m;
+                assert!(off_m.abs() < 1e-9, "{goes_m} {led_m}: {off_m} m off");
+            }
+        }
+    }
 }

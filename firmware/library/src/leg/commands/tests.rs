@@ -183,6 +183,44 @@ fn a_brake_gives_way_to_no_load_cell_in_doubt() {
     }
 }
 
+/// Each fault that a load cell may cause: the motors of a leg at rest may have followed that cell, and stand at once. One on its way brakes, and pays no
+/// tendon out by its cells. Every other fault lets both brake, and give way.
+#[test]
+fn a_held_leg_goes_on_with_nothing_by_any_fault_that_a_load_cell_may_cause() {
+    for (fault, of_a_cell) in [
+        (Fault::Slack, true),
+        (Fault::TensionJump, true),
+        (Fault::Residual, true),
+        (Fault::CellStale, true),
+        (Fault::CellStuck, true),
+        (Fault::CellSaturated, true),
+        (Fault::Swings, true),
+        (Fault::CurrentDisagrees, false),
+        (Fault::OverTemperature, false),
+        (Fault::SupplyLow, false),
+        (Fault::LateTick, false),
+        (Fault::CommandTimeout, false),
+    ] {
+        for moves in [false, true] {
+            let mut leg = armed();
+            if moves {
+                let went = leg.execute(Command::Move { x: 0.1, y: 0.0 }, &MEASURED);
+                assert_eq!(went, Ok(()));
+            }
+            for tick in 0..1000 {
+                leg.shared.axes[1].track(1e-6 * f64::from(tick));
+            }
+            leg.shared.axes[1].lead_by(1e-6);
+            let state = leg.supervisor.react(State::Active, FaultSet::single(fault));
+            assert_eq!(state, State::Held);
+            leg.enter(state, &MEASURED);
+            assert_eq!(leg.mode.brakes(), moves || !of_a_cell, "{fault:?} {moves}");
+            let gives_way = leg.shared.f_max_n < f64::MAX;
+            assert_eq!(gives_way, !of_a_cell, "{fault:?} {moves}");
+        }
+    }
+}
+
 #[test]
 fn a_leg_that_is_led_down_to_be_disarmed_is_not_led_elsewhere() {
     let mut leg = armed();

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{BRAKE_S, HAUL_S, Jogging, SETTLE_S, STRAY_M};
+use super::{BRAKE_S, DISOBEYED_M, HAUL_S, Jogging, SETTLE_S, STRAY_M};
 use crate::control::{JOG_RISE_S, JogBounds, Measured, TICK_S, ticks};
 use crate::jog::{JogDemand, JogDrive, JogEnd, JogReport};
 use crate::leg::shared::{Checked, Shared};
@@ -181,5 +181,22 @@ fn a_motor_is_braked_without_a_voltage_at_the_end() {
         assert_eq!(jog.jogging.voltage(), (1, 0.0));
         assert_eq!(jog.report().end, JogEnd::Tension(1));
         assert_eq!(over, tick == ticks(BRAKE_S));
+    }
+}
+
+/// One that turns on without a voltage does not obey it: its driver is switched off before the time of the brake is over.
+#[test]
+fn a_motor_that_turns_on_while_it_is_braked_is_switched_off_at_once() {
+    for (step_m, at_once) in [
+        (1.1 * f64::from(DISOBEYED_M), true),
+        (0.9 * f64::from(DISOBEYED_M), false),
+    ] {
+        let mut jog = Jog::new(5e-3);
+        jog.turn();
+        jog.measured.steady_tensions_n[0] = 1e3;
+        assert!(!jog.turn());
+        jog.measured.pulled_m[1] += step_m;
+        let over = jog.jogging.step(&mut jog.shared, &jog.measured);
+        assert_eq!(over, at_once, "{step_m} m");
     }
 }
