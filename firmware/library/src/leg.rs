@@ -329,7 +329,8 @@ impl<T: Scalar> Leg<T> {
         {
             report.end = JogEnd::CutOff;
         }
-        let mut lost = latched.overlaps(FaultSet::LOSES_ZERO);
+        // One that homes has doubts of its earlier zero: it is not used again where that does not come to its end.
+        let mut lost = latched.overlaps(FaultSet::LOSES_ZERO) || state == State::Homing;
         if matches!(state, State::RampingDown | State::Off) {
             // From now on nothing can be compared.
             lost |= self.doubts(measured).any();

@@ -138,3 +138,40 @@ fn homing_does_not_find_a_load_cell_that_is_off() {
         assert_eq!(state_after_homing(0.0, sign * 0.2), State::Active);
     }
 }
+
+/// Whoever homes a leg that was homed before has reason to: where that is stopped or fails, the earlier zero is not used again.
+#[test]
+fn a_homing_that_does_not_come_to_its_end_leaves_no_earlier_zero() {
+    for defect in [
+        None,
+        Some(Defect::CellsSwapped),
+        Some(Defect::ExcitationLost),
+        Some(Defect::TendonCut(0)),
+    ] {
+        let mut stand = armed(&RigFile::load(None).unwrap(), [0.0, 0.0], 0.0, 1);
+        obey(&mut stand, Command::Disarm);
+        pass(&mut stand, 8.0);
+        assert_eq!(stand.state(), State::Disarmed);
+        assert!(stand.telemetry.unwrap().homed);
+        if let Some(defect) = defect {
+            stand.plant().set_defect(defect, true);
+        }
+        obey(&mut stand, Command::Home);
+        if defect.is_none() {
+            pass(&mut stand, 2.0);
+            assert_eq!(stand.state(), State::Homing);
+            obey(&mut stand, Command::Stop);
+        } else {
+            pass(&mut stand, 20.0);
+        }
+        let rest_m = stand.truth.tip_m;
+        assert!(!stand.telemetry.unwrap().homed, "{defect:?}");
+        for command in [Command::Clear, Command::Arm] {
+            obey(&mut stand, command);
+            pass(&mut stand, 8.0);
+            assert_eq!(stand.state(), State::Disarmed, "{defect:?}, {command:?}");
+            let moved_mm = (stand.truth.tip_m - rest_m).norm() * 1e3;
+            assert!(moved_mm < 3.0, "{defect:?}, {command:?}: {moved_mm} mm");
+        }
+    }
+}

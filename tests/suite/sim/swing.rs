@@ -130,11 +130,11 @@ fn a_leg_at_rest_is_held_at_once_where_a_load_cell_is_in_doubt() {
 const SHAKE_S: f64 = 0.125;
 
 /// Shakes a leg for as long, or until it is no longer active; `between` comes before each push.
-fn shake(stand: &mut Stand, pushes: u32, mut between: impl FnMut(&mut Stand, u32)) {
+fn shake(stand: &mut Stand, force_n: f64, pushes: u32, mut between: impl FnMut(&mut Stand, u32)) {
     let across = stand.plant().transverse(90.0);
     for push in 0..pushes {
         between(stand, push);
-        let force_n = if push % 2 == 0 { 4.0 } else { -4.0 };
+        let force_n = if push % 2 == 0 { force_n } else { -force_n };
         stand.plant().push(across * force_n, 0.06, 0.01);
         pass(stand, SHAKE_S);
         if stand.state() != State::Active {
@@ -143,20 +143,25 @@ fn shake(stand: &mut Stand, pushes: u32, mut between: impl FnMut(&mut Stand, u32
     }
 }
 
-/// On its way it swings by what it is asked for, so that it is not stopped.
+/// On its way it swings by what it is asked for, too, so that a greater swing alone stops it.
 #[test]
-fn a_leg_that_is_shaken_at_rest_is_held_and_one_on_its_way_goes_on() {
+fn a_leg_that_is_shaken_is_held_and_on_its_way_by_a_greater_swing_alone() {
     let resting = armed(&paper(), [0.0, 10.0], 0.5, 5);
-    let mut moving = resting.clone();
-    shake(&mut moving, 32, |stand, push| {
-        if push % 3 == 0 {
-            let tilt_deg = if push % 2 == 0 { 25.0 } else { 10.0 };
-            stand.command(&move_to([0.0, tilt_deg])).unwrap();
-        }
-    });
-    assert_eq!(moving.state(), State::Active, "{:?}", moving.faults());
-    let mut shaken = resting;
-    shake(&mut shaken, 16, |_, _| ());
-    assert_eq!(shaken.state(), State::Held);
-    assert!(shaken.faults().has(Fault::Swings), "{:?}", shaken.faults());
+    for (force_n, moves, held) in [
+        (4.0, false, true),
+        (1.0, false, true),
+        (1.0, true, false),
+        (4.0, true, true),
+    ] {
+        let mut stand = resting.clone();
+        shake(&mut stand, force_n, 32, |stand, push| {
+            if moves && push % 3 == 0 {
+                let tilt_deg = if push % 2 == 0 { 25.0 } else { 10.0 };
+                stand.command(&move_to([0.0, tilt_deg])).unwrap();
+            }
+        });
+        let what = format!("{force_n} N, moves {moves}: {:?}", stand.faults());
+        assert_eq!(stand.state() == State::Held, held, "{what}");
+        assert_eq!(stand.faults().has(Fault::Swings), held, "{what}");
+    }
 }

@@ -322,22 +322,19 @@ fn a_swing_that_is_never_named_stays_small() {
     assert!(largest_mm < UNNAMED_MM, "{largest_mm} mm");
 }
 
-/// While a stream is followed no swing needs a name: it may last until the stream ends, and is named after that.
+/// On its way a leg swings by its commands, too: a greater swing is named, and later.
 #[test]
-fn a_swing_under_a_stream_is_named_once_the_stream_has_ended() {
+fn a_swing_of_a_leg_that_follows_points_ends_in_hold() {
+    const WITHIN_S: f64 = 2.5;
     for (pose, ms) in [(POSES[0], 20), (POSES[2], 40)] {
-        let mut leg = Leg::paper(pose);
-        leg.begin(Activity::Streaming);
-        leg.push(8 * ms);
-        let streamed = leg.watch(6.0);
-        println!("{ms} ms late, streamed, {pose:?}: {streamed:.3?}");
-        assert!(streamed.largest_mm < 5.0, "{streamed:?}");
-        if streamed.after_s.is_some() {
-            continue;
-        }
-        leg.streams = false;
-        leg.send_point(StreamPart::Last);
-        leg.pass(f64::from(AHEAD_TICKS) / f64::from(TICK_HZ));
-        require_held("the stream has ended", &leg.watch(4.0));
+        let swing = Leg::paper(pose).swung(Activity::Streaming, 8 * ms, 4.0);
+        println!("{ms} ms late, streamed, {pose:?}: {swing:.3?}");
+        let named = swing.after_s.is_some_and(|after_s| after_s < WITHIN_S);
+        assert!(named && swing.state == State::Held, "{swing:?}");
+        assert_eq!(swing.faults, FaultSet::single(Fault::Swings));
+        assert!(swing.largest_mm < 5.0, "{swing:?}");
+        // With sound cells it rings down, and the stream goes on.
+        let swing = Leg::paper(pose).swung(Activity::Streaming, 0, 3.0);
+        assert!(swing.after_s.is_none() && swing.last_mm < 0.02, "{swing:?}");
     }
 }

@@ -110,7 +110,7 @@ impl<T: Scalar> Active<T> {
                     shared.feed_friction();
                 }
                 if self.trajectory.moving() {
-                    shared.damping.forget_swing();
+                    shared.damping.forget_small_swing();
                 } else if shared
                     .target
                     .as_ref()

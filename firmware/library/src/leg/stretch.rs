@@ -183,8 +183,8 @@ fn find_factor<T: Scalar>(shared: &Shared<T>) -> StretchFound<T> {
 /// Whether the load is not more than this payload has about the leg's joint with the leg horizontal, kg; a load that is no number is more.
 fn load_is_within<T: Scalar>(shared: &Shared<T>, payload_kg: f32) -> bool {
     let most_nm = shared.mechanism.payload_lever * T::from(payload_kg);
-    let load_nm = shared.estimator.excess_nm(&shared.mechanism);
-    load_nm.iter().all(|load| load.abs() <= most_nm)
+    let [x, y] = shared.estimator.excess_nm(&shared.mechanism);
+    x * x + y * y <= most_nm * most_nm
 }
 
 #[cfg(test)]
