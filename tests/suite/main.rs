@@ -90,6 +90,7 @@ mod sim {
     mod stiffness_floor;
     mod streamed_tension;
     mod strike_bars_page;
+    mod swaying_stream;
     mod swing;
     mod tension_limits;
     mod tensioning;

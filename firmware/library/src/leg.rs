@@ -355,6 +355,7 @@ impl<T: Scalar> Leg<T> {
             // Homing turns one motor after the other, with little tension, before the leg follows them together.
             self.shared.zero_m = None;
             self.shared.load_seen = false;
+            self.shared.estimate = None;
         }
     }
 

@@ -290,9 +290,9 @@ fn without_its_load_cell_the_current_ends_a_jog() {
     assert!(tension_n < 80.0, "{tension_n}");
 }
 
-/// An output that is silent at the voltage of the jog: what that drives by resistance and counts ends it.
+/// An output that is silent at the voltage of the jog: a ceiling of the current that the voltage drives ends it, or counts that do not come.
 #[test]
-fn without_its_load_cell_the_current_ends_a_jog_at_an_output_that_is_silent() {
+fn without_its_load_cell_a_jog_at_an_output_that_is_silent_ends_in_time() {
     let more = "[actuator]\ncurrent_output = \"magnitude_when_driven\"\n";
     let rig = RigFile::parse("silent", &[READY_RIGS[0].text, more].concat()).unwrap();
     let (line, mut operator) = leg_of(&rig, InitialState::Homed);

@@ -4,6 +4,7 @@
 
 use super::station::FASTEST_MM_PER_S;
 use super::station_stand::{Excursion, faults, keeping};
+use crate::common::require_said;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_model::evaluate;
 use leg_rig::ready_rigs::READY_RIGS;
@@ -36,6 +37,17 @@ fn pretensions_n(rig: &RigFile, [azimuth_deg, tilt_deg]: [f64; 2]) -> [f64; 3] {
 /// longer than the 3 s that are asked for.
 const NEAR_S: [f64; 3] = [3.2, 1.2, 0.8];
 const FAR_S: [f64; 3] = [6.0, 3.8, 2.7];
+
+#[test]
+fn the_page_says_how_soon_a_payload_is_compensated() {
+    let [near_s, ..] = NEAR_S.map(|back_s| back_s + OVER_S);
+    let [far_s, middle_s, _] = FAR_S.map(|back_s| back_s + OVER_S);
+    let words = format!(
+        "4 N above the lowest pretension that the pose allows within {near_s:.1} s at 10° and {far_s:.1} s at 20°, in the middle at 20° within {middle_s:.1} s"
+    );
+    require_said("firmware/SAFETY.md", &[words]);
+    assert_eq!(ROOM_N[0], 4.0);
+}
 
 /// Hangs the payload on every ready rig, and asks each to be back in time and not too fast; with the first seed.
 fn require_back(tilt_deg: f64, back_s: [f64; 3], mut seed: u64) {

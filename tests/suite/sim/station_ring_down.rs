@@ -174,7 +174,7 @@ fn a_leg_with_another_support_that_keeps_station_rings_down() {
     }
 }
 
-/// Without the brake the ratios are below 0.05, and three of four pushed legs come back too late, or ring on: the bars can fail.
+/// Without the brake three of eight and more come back too late, or ring on: the bars can fail.
 #[test]
 fn a_leg_that_keeps_station_without_a_brake_rings_on() {
     let mut rig = paper();

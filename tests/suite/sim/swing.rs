@@ -147,14 +147,14 @@ fn shake(stand: &mut Stand, force_n: f64, pushes: u32, mut between: impl FnMut(&
 #[test]
 fn a_leg_that_is_shaken_is_held_and_on_its_way_by_a_greater_swing_alone() {
     let resting = armed(&paper(), [0.0, 10.0], 0.5, 5);
-    for (force_n, moves, held) in [
-        (4.0, false, true),
-        (1.0, false, true),
-        (1.0, true, false),
-        (4.0, true, true),
+    for (force_n, moves, pushes, held) in [
+        (4.0, false, 16, true),
+        (1.0, false, 24, true),
+        (1.0, true, 32, false),
+        (4.0, true, 32, true),
     ] {
         let mut stand = resting.clone();
-        shake(&mut stand, force_n, 32, |stand, push| {
+        shake(&mut stand, force_n, pushes, |stand, push| {
             if moves && push % 3 == 0 {
                 let tilt_deg = if push % 2 == 0 { 25.0 } else { 10.0 };
                 stand.command(&move_to([0.0, tilt_deg])).unwrap();

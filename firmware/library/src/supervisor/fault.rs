@@ -272,7 +272,7 @@ faults! {
     30 Swings {
         name: "leg swings",
         reaction: Hold,
-        cause: "the tip of a leg that rests swings by about 0.3 mm or more, or of one on its way by 1 mm, and does not ring down for 1.8 s, or for less where the swing grows",
+        cause: "the tip of a leg that rests swings by about 0.3 mm or more, or of one on its way by about 1 mm, and does not ring down for 1.8 s, or for less where the swing grows",
         remedy: "see that each load cell is on its own tendon; look what shakes the leg; check gains and damping_ratio with `leg bode`",
         clears: Command,
     }

@@ -177,7 +177,7 @@ signals! {
         = |at| at.telemetry.pulled_m;
     Reference SingleThree reference_m "How far each shall be, m."
         = |at| at.telemetry.reference_m;
-    Estimated SingleThree unstretched_at_zero_m "Length of each without tension where its encoder counts zero, m; 0 before homing."
+    Estimated SingleThree unstretched_at_zero_m "Length of each without tension where its encoder counts zero, m; 0 while that is not known."
         = |at| at.telemetry.unstretched_at_zero_m;
     Estimated Single elongation_factor "Elongation of the tendons over that by the rig file, found after homing; 1 before, and where the file is right to 3 %."
         = |at| at.telemetry.elongation_factor;

@@ -83,7 +83,8 @@ fn a_suspended_command_that_has_the_port_is_named() {
         "{told}"
     );
     // It is said every two seconds, and given up after ten; a busy machine takes longer.
-    assert_eq!(told.matches("tried again").count(), 4, "{told}");
+    let notices = told.matches("tried again").count();
+    assert!((3..=5).contains(&notices), "{told}");
     let given_up = Duration::from_secs(10);
     assert!((given_up..2 * given_up).contains(&took), "{took:?}");
     assert_eq!(board.json(&["stop"])["state"], "disarmed");

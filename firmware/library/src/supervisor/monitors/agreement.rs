@@ -168,8 +168,7 @@ impl<T: Scalar> Agreement<T> {
         self.watches() && self.beyond_now_m <= T::zero()
     }
 
-    /// Whether the sensors of a held leg that are watched had not agreed closely for longer than a swing explains when they were trusted last,
-    /// and do not yet.
+    /// Whether the sensors of a held leg had not agreed closely for longer than a swing explains before a fault was latched, and do not yet.
     pub fn is_far(&self) -> bool {
         self.watches() && !self.close && self.far_cycles >= FAR_CYCLES
     }
