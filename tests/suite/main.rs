@@ -61,6 +61,7 @@ mod rig {
 }
 
 mod sim {
+    mod armed_often;
     mod braking;
     mod circles;
     mod commanded_often;
@@ -74,6 +75,7 @@ mod sim {
     mod late_points;
     mod load_left_out;
     mod lost_numbers;
+    mod lost_target;
     mod move_times;
     mod other_answers;
     mod ramped_pretension;

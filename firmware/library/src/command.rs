@@ -14,8 +14,8 @@ pub enum Compensation {
     Off,
     /// The one estimated from the tensions: the loaded tip comes to its target.
     Estimated,
-    /// The last estimate: the leg answers a push with its stiffness, and does not take it for a load. Once another one is chosen, it stays
-    /// until the leg rests.
+    /// The last estimate: the leg answers a push with its stiffness, and does not take it for a load. A leg that is armed or cleared takes what its
+    /// tendons show then. Once another one is chosen, it stays until the leg rests.
     Frozen,
 }
 

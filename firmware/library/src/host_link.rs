@@ -64,8 +64,17 @@ struct Service {
     /// Host of the last command that can set the leg in motion.
     driver: Option<HostId>,
     stream: Stream,
-    /// Number of the request to save that waits for [`HostLink::saved`].
-    saving: Option<u16>,
+    waiting: Waiting,
+}
+
+/// What waits, by the number of its request. Flash is written at rest alone: neither begins beside the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Waiting {
+    Nothing,
+    /// A request to save, for [`HostLink::saved`].
+    Save(u16),
+    /// The last command that can set the leg in motion, to be executed.
+    Begin(u16),
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,7 +97,7 @@ impl HostLink {
                 settings,
                 driver: None,
                 stream: Stream::default(),
-                saving: None,
+                waiting: Waiting::Nothing,
             },
         }
     }
@@ -113,6 +122,9 @@ impl HostLink {
     /// or more seldom.
     pub fn report(&mut self, leg: &mut impl CommandedLeg) {
         while let Some(CommandOutcome { number, result }) = leg.outcome() {
+            if self.service.waiting == Waiting::Begin(number) {
+                self.service.waiting = Waiting::Nothing;
+            }
             let reply = match result {
                 Ok(()) => HostReply::Done,
                 Err(refusal) => HostReply::Refused(HostRefusal::Command(refusal)),
@@ -148,12 +160,13 @@ impl HostLink {
     /// The settings that the host asks to keep; [`Self::saved`] has to follow.
     #[must_use]
     pub fn unsaved_settings(&self) -> Option<&Settings> {
-        self.service.saving.and(Some(&self.service.settings))
+        self.service.saves().then_some(&self.service.settings)
     }
 
     /// Reports to the host whether its settings were kept.
     pub fn saved(&mut self, kept: bool) {
-        if let Some(number) = self.service.saving.take() {
+        if let Waiting::Save(number) = self.service.waiting {
+            self.service.waiting = Waiting::Nothing;
             let reply = if kept {
                 HostReply::Done
             } else {
@@ -165,6 +178,11 @@ impl HostLink {
 }
 
 impl Service {
+    /// Whether settings are being saved.
+    const fn saves(&self) -> bool {
+        matches!(self.waiting, Waiting::Save(_))
+    }
+
     /// The number of what the decoder found, and the reply to it, if that does not come later.
     fn answer(
         &mut self,
@@ -233,10 +251,10 @@ impl Service {
                 if leg.state().driven() {
                     return Err(HostRefusal::Driven);
                 }
-                if self.saving.is_some() {
+                if self.waiting != Waiting::Nothing {
                     return Err(HostRefusal::Busy);
                 }
-                self.saving = Some(number);
+                self.waiting = Waiting::Save(number);
                 return Ok(None);
             }
         }))
@@ -253,7 +271,7 @@ impl Service {
         if !self.identified {
             return Err(HostRefusal::NotIdentified);
         }
-        if self.saving.is_some() {
+        if self.saves() {
             // What would be acknowledged as kept is not what is in use then.
             return Err(HostRefusal::Busy);
         }
@@ -307,12 +325,13 @@ impl Service {
             return Err(HostRefusal::OtherHost);
         }
         // Flash is written at rest alone.
-        let waits = begins && self.saving.is_some();
+        let waits = begins && self.saves();
         if waits || !leg.command(number, command) {
             return Err(HostRefusal::Busy);
         }
         if begins {
             self.driver = Some(host);
+            self.waiting = Waiting::Begin(number);
         }
         Ok(None)
     }

@@ -7,6 +7,7 @@ mod give_way;
 mod held;
 mod homing;
 mod jogging;
+mod known_slack;
 mod length_offsets;
 mod link_watch;
 mod mode;
@@ -14,6 +15,7 @@ mod phase;
 mod pretension_search;
 mod ramping_down;
 mod recorded;
+mod replacement;
 mod report;
 mod servo_run;
 mod shadow;
@@ -33,6 +35,7 @@ use crate::supervisor::{
     Agreement, ErrorGrowth, Event, Excess, Fault, FaultSet, MonitorInput, Monitors, State,
     Supervisor,
 };
+use active::Active;
 use command_queue::CommandQueue;
 use leg_model::{Error, Scalar};
 use link_watch::LinkWatch;
@@ -180,9 +183,7 @@ impl<T: Scalar> Leg<T> {
                 if self.phase == Phase::Pretension && active.led_down() {
                     step.event = Some(Event::Disarm);
                 } else if let Err(error) = active.step(self.phase, shared, measured) {
-                    step.faults = fault_of_error(error);
-                    // Nobody gives a leg that keeps station another target.
-                    step.event = active.station.kept().map(|_| Event::Stop);
+                    step = failed_step(active, error);
                 }
                 return step;
             }
@@ -340,8 +341,10 @@ impl<T: Scalar> Leg<T> {
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
-            motors: !latched.overlaps(FaultSet::HINDERED),
+            free: !latched.has(Fault::Slack),
+            currents: !latched.has(Fault::CurrentDisagrees),
             cells: !latched.overlaps(FaultSet::SUSPECT_CELLS),
+            unfaulted: !self.supervisor.stopped(),
         };
         let momentum = self.mode.momentum(&self.shared, trust);
         self.mode = Mode::begin(state, &mut self.shared, measured, momentum, trust);
@@ -373,32 +376,18 @@ impl<T: Scalar> Leg<T> {
         doubts.add(Fault::TensionJump, jumped);
         doubts
     }
-
-    /// Forgets where its tendons are: it has to home.
-    pub fn forget_zero(&mut self) {
-        self.shared.zero_m = None;
-    }
-
-    /// Refuses the commands that wait. Whoever lets another leg take this one's place does it before, where that takes too long at once.
-    pub fn refuse_commands(&mut self) {
-        self.queue.refuse_waiting();
-    }
-
-    /// Starts in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.
-    /// The commands that wait are refused, and their outcomes reported from here.
-    pub fn inherit_from(&mut self, before: &mut Self) {
-        self.queue.inherit_outcomes(&mut before.queue);
-        self.tick = before.tick;
-        self.mode = Mode::boot();
-        self.supervisor.inherit_faults(before.supervisor.latched());
-    }
 }
 
-/// The fault of a control law that gives no result.
-#[inline(always)]
-fn fault_of_error(error: Error) -> FaultSet {
-    FaultSet::single(match error {
+/// What follows from a step of a control law that gives no result.
+// Apart from the code of every tick.
+#[cold]
+#[inline(never)]
+fn failed_step<T: Scalar>(active: &Active<T>, error: Error) -> ModeStep {
+    let faults = FaultSet::single(match error {
         Error::Infeasible => Fault::Infeasible,
         _ => Fault::PoseLost,
-    })
+    });
+    // Nobody gives a leg that keeps station another target.
+    let event = active.station.kept().map(|_| Event::Stop);
+    ModeStep { faults, event }
 }

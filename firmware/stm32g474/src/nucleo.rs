@@ -5,6 +5,7 @@ use crate::encoders::Encoders;
 use crate::power::Power;
 use crate::settings_task;
 use crate::slow_sensors::SlowSensors;
+use crate::tick_watchdog;
 use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::board::{LowerHalf, PowerStage};
 use leg_firmware::drive::Drive;
@@ -63,6 +64,10 @@ impl LowerHalf for Nucleo {
     #[inline(always)]
     fn drive(&mut self, drive: &Drive<f32>) {
         self.stage.drive(drive);
+        // In each tick, not only in the first: a debugger that attaches may have the watchdog rest in a halt. OpenOCD does.
+        if drive.enabled {
+            tick_watchdog::set_rest_in_halt(false);
+        }
     }
 
     fn cut(&mut self) {

@@ -133,7 +133,6 @@ impl PowerPins for Power {
     #[inline(always)]
     fn switch(&mut self, on: bool) {
         if on {
-            tick_watchdog::set_rest_in_halt(false);
             pac::TIM1.bdtr().modify(|w| w.set_moe(true));
             pac::GPIOC.bsrr().write(|w| w.set_bs(ENABLE_PIN, true));
         } else {

@@ -40,7 +40,7 @@ pub fn refresh_if_started() {
 }
 
 /// Whether it stands still while a debugger halts the processor: only while nothing is driven. A halt of a leg that is driven
-/// ends in a reset, and so takes the drivers' enable line away, too.
+/// ends in a reset, and so takes the drivers' enable line away, too. A debugger may set it at any time.
 #[inline(always)]
 pub fn set_rest_in_halt(rests: bool) {
     pac::DBGMCU.apb1lfzr().modify(|w| w.set_wwdg(rests));

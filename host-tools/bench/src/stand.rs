@@ -255,8 +255,8 @@ mod tests {
     use leg_sim::plant::Start;
     use leg_sim::shadow::OTHER_TICKS_MAX;
 
-    /// A shadow that begins anew beside a leg that is armed is in another state, and has not answered what that has: a tick fails, where it is
-    /// judged.
+    /// A shadow that begins anew beside a leg that is armed is in another state: a tick fails, where it is judged. The host is silent, so that
+    /// nothing is answered otherwise.
     #[test]
     fn a_leg_that_leaves_its_shadow_is_told() {
         let rig = RigFile::load(None).unwrap();
@@ -269,10 +269,12 @@ mod tests {
         assert_eq!(stand.require_shadow(OTHER_TICKS_MAX), Ok(()));
         let divergence = stand.shadow.divergence;
         assert!(divergence.duty > 0.0 && divergence.reference_m > 0.0);
+        stand.silence();
+        stand.wait(0.01).unwrap();
         stand.shadow = started().shadow;
         let mut unjudged = stand.clone();
         let left = stand.wait(0.01).unwrap_err();
-        assert!(left.contains("its shadow"), "{left}");
+        assert!(left.contains("leaves the state of its shadow"), "{left}");
         unjudged.other_ticks = None;
         unjudged.wait(0.01).unwrap();
         assert!(unjudged.require_shadow(OTHER_TICKS_MAX).is_err());

@@ -22,6 +22,15 @@ const LONGEST_S: f64 = 2e5;
 const HELP: &str = "give rows as `0.01,45,20` under the header `time_s,azimuth_deg,tilt_deg`, the times rising; `pretension_n` and \
      `stiffness_nm_per_rad` may be further columns";
 
+/// What a header may name; the first three it has to.
+const COLUMNS: [&str; 5] = [
+    "time_s",
+    "azimuth_deg",
+    "tilt_deg",
+    "pretension_n",
+    "stiffness_nm_per_rad",
+];
+
 /// A row as it is written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -88,9 +97,8 @@ impl<R: BufRead> PathReader<R> {
                 return Err(self.refused(&what));
             }
             let row = record.deserialize(Some(header));
-            return self
-                .row(row.map_err(|error| self.refused(&plain(&error)))?)
-                .map(Some);
+            let row = row.map_err(|error| self.refused(&row_error(&error, header, &record)))?;
+            return self.row(row).map(Some);
         }
         Ok(None)
     }
@@ -115,19 +123,34 @@ impl<R: BufRead> PathReader<R> {
                 Some(record) => {
                     return record
                         .map(Some)
-                        .map_err(|error| self.refused(&plain(&error)));
+                        .map_err(|error| self.refused(&error.to_string()));
                 }
             }
         }
     }
 
     fn check_header(&self, header: &StringRecord) -> Result<(), Failure> {
-        for column in ["time_s", "azimuth_deg", "tilt_deg"] {
-            if !header.iter().any(|name| name == column) {
+        for column in &COLUMNS[..3] {
+            if !header.iter().any(|name| name == *column) {
                 return Err(self.refused(&format!("the header has no column {column}")));
             }
         }
+        for (i, name) in header.iter().enumerate() {
+            let number = i + 1;
+            if !COLUMNS.contains(&name) {
+                return Err(self.refused(&format!("column {number}, `{name}`, is not known")));
+            }
+            if header.iter().take(i).any(|before| before == name) {
+                return Err(self.refused(&format!("column {number}, {name}, is there twice")));
+            }
+        }
         Ok(())
+    }
+
+    /// The number of the last line that was read, from 1.
+    #[must_use]
+    pub const fn line(&self) -> u64 {
+        self.line
     }
 
     fn row(&mut self, text: RowText) -> Result<PathRow, Failure> {
@@ -182,14 +205,19 @@ impl<R: BufRead> PathReader<R> {
     }
 }
 
-/// A csv error without the place: here each line is a text of its own.
-fn plain(error: &csv::Error) -> String {
-    match error.kind() {
-        csv::ErrorKind::Deserialize { err, .. } => match err.field() {
-            Some(field) => format!("column {}: {}", field + 1, err.kind()),
-            None => err.kind().to_string(),
-        },
-        _ => error.to_string(),
+/// What is wrong with a row of numbers, with the column.
+fn row_error(error: &csv::Error, header: &StringRecord, row: &StringRecord) -> String {
+    let field = match error.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => err.field(),
+        _ => None,
+    };
+    let column = field.and_then(|field| usize::try_from(field).ok());
+    let cell = column.and_then(|column| Some((column, header.get(column)?, row.get(column)?)));
+    match cell {
+        Some((column, name, text)) => {
+            format!("column {}, {name}: `{text}` is no number", column + 1)
+        }
+        None => error.to_string(),
     }
 }
 

@@ -50,16 +50,19 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         ));
     }
     let rows = rows(&swept);
-    let files = files::save(args.out.as_deref(), &swept, &rows)?;
+    // What was found is told, whether it can be saved or not.
+    let saved = files::save(args.out.as_deref(), &swept, &rows);
+    let files = saved.as_deref().unwrap_or_default();
     let passed = swept.iter().all(|swept| swept.passes());
     let json = json_object! {
         seed: args.seed,
         states: args.count,
         passed: passed,
         rows: &rows,
-        files: &files,
+        files: files,
     };
-    options.report(&json, || report::table(&rows, &swept, &files))?;
+    options.report(&json, || report::table(&rows, &swept, files))?;
+    saved?;
     if passed {
         return Ok(());
     }

@@ -23,19 +23,19 @@ pub(crate) struct Args {
     /// The tensile test.
     file: PathBuf,
     /// Rows below this force count as slack, N; a thousandth of the largest force if left out.
-    #[arg(long, value_name = "N", value_parser = not_negative, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = not_negative)]
     taut_n: Option<f64>,
     /// Length of the test piece, mm, where it is not that of the tendon.
-    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true, requires_all = ["diameter_mm", "tendon_length_mm", "tendon_diameter_mm"])]
+    #[arg(long, value_name = "MM", value_parser = positive, requires_all = ["diameter_mm", "tendon_length_mm", "tendon_diameter_mm"])]
     length_mm: Option<f64>,
     /// Diameter of the test piece, mm.
-    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true, requires = "length_mm")]
+    #[arg(long, value_name = "MM", value_parser = positive, requires = "length_mm")]
     diameter_mm: Option<f64>,
     /// Length of the tendon, mm.
-    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true, requires = "length_mm")]
+    #[arg(long, value_name = "MM", value_parser = positive, requires = "length_mm")]
     tendon_length_mm: Option<f64>,
     /// Diameter of the tendon, mm.
-    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true, requires = "length_mm")]
+    #[arg(long, value_name = "MM", value_parser = positive, requires = "length_mm")]
     tendon_diameter_mm: Option<f64>,
     /// Writes the section for a rig file here instead of printing it.
     #[arg(long, value_name = "FILE")]

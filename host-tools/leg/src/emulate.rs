@@ -6,6 +6,7 @@ use crate::numbers::seconds;
 use crate::options::Options;
 use crate::output::{load_rig, note};
 use leg_base::failure::Failure;
+use leg_base::json_line::to_line;
 use leg_base::json_object;
 use leg_base::text_input::{self, Line};
 use leg_host::byte_port::BytePort;
@@ -83,7 +84,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     };
     let port = open_port(args.tcp.as_deref())?;
     let cancel = CancelFlag::set_by_ctrl_c();
-    let disturbances = disturbances(args.disturbances);
+    let disturbances = disturbances(args.disturbances, options);
     let name = port.name();
     options.report(&json_object! { port: &name }, || format!("{name}\n"))?;
     let board = EmulatedBoard::new(leg, port);
@@ -121,17 +122,19 @@ fn open_port(tcp: Option<&str>) -> Result<Box<dyn BytePort>, Failure> {
 }
 
 /// What the user does to the leg, read in a thread of its own.
-fn disturbances(read: bool) -> Receiver<Action> {
+fn disturbances(read: bool, options: Options) -> Receiver<Action> {
     let (sender, receiver) = channel();
     if read {
-        std::thread::spawn(move || read_disturbances(&sender));
+        std::thread::spawn(move || read_disturbances(&sender, options));
     }
     receiver
 }
 
-fn read_disturbances(sender: &Sender<Action>) {
+fn read_disturbances(sender: &Sender<Action>, options: Options) {
     let mut input = std::io::stdin().lock();
+    let mut number = 0_u64;
     while let Ok(Some(line)) = text_input::next_line(&mut input) {
+        number += 1;
         let (line, action) = match line {
             Line::Whole(bytes) => {
                 let line = String::from_utf8_lossy(&bytes).into_owned();
@@ -146,9 +149,40 @@ fn read_disturbances(sender: &Sender<Action>) {
                     return;
                 }
             }
-            Err(error) => note(&format!(
-                "leg: {line}: {error}; `leg emulate --help` lists the disturbances"
-            )),
+            Err(error) => note(&refusal(number, &format!("{line}: {error}"), options)),
         }
+    }
+}
+
+/// What is said of a disturbance that is refused. It ends nothing, so that there is no exit code.
+fn refusal(line: u64, error: &str, options: Options) -> String {
+    let help = "`leg emulate --help` lists the disturbances";
+    if !options.json {
+        return format!("leg: standard input, line {line}: {error}; {help}");
+    }
+    let json = json_object! { error: error, help: help, file: "standard input", line: line };
+    // Strings and integers always have a form in JSON.
+    to_line(&json).unwrap_or_default().trim_end().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::refusal;
+    use crate::options::Options;
+
+    #[test]
+    fn a_refused_disturbance_has_its_line() {
+        let options = |json| Options {
+            verbose: false,
+            json,
+        };
+        let help = "`leg emulate --help` lists the disturbances";
+        assert_eq!(
+            refusal(3, "x: no", options(false)),
+            format!("leg: standard input, line 3: x: no; {help}")
+        );
+        let json =
+            format!(r#"{{"error":"x: no","help":"{help}","file":"standard input","line":3}}"#);
+        assert_eq!(refusal(3, "x: no", options(true)), json);
     }
 }

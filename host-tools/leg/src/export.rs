@@ -35,13 +35,13 @@ struct UrdfArgs {
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
     /// The azimuth towards which each leg leans where its joints are at zero, degrees, -3600 to 3600.
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg)]
     azimuth_deg: f64,
     /// Its tilt from the vertical, degrees, within that of the rig file.
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg)]
     tilt_deg: f64,
     /// Mass at the tip, kg.
-    #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg)]
     payload_kg: f64,
     #[command(flatten)]
     several: Several,
@@ -61,16 +61,16 @@ struct MjcfArgs {
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
     /// The azimuth towards which the leg leans, degrees, -3600 to 3600.
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg)]
     azimuth_deg: f64,
     /// The tilt from the vertical, degrees, -60 to 60.
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg)]
     tilt_deg: f64,
     /// Mass at the tip, kg.
-    #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg)]
     payload_kg: f64,
     /// Pretension, N; that of the rig if left out.
-    #[arg(long, alias = "level-n", value_name = "N", value_parser = finite, allow_negative_numbers = true)]
+    #[arg(long, alias = "level-n", value_name = "N", value_parser = finite)]
     pretension_n: Option<f64>,
     #[command(flatten)]
     several: Several,

@@ -19,10 +19,10 @@ pub(crate) struct Args {
     #[arg(value_name = "MOTOR", value_parser = clap::value_parser!(u8).range(1..=3))]
     motor: u8,
     /// How far the tendon is pulled in, mm of its travel: at most 10; a negative travel pays it out.
-    #[arg(long, value_name = "MM", value_parser = finite, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", value_parser = finite)]
     travel: f64,
     /// The voltage at the motor, V; one that turns it at 2 mm/s if left out.
-    #[arg(long, value_name = "V", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "V", value_parser = positive)]
     volts: Option<f64>,
     #[command(flatten)]
     leg: LegArgs,

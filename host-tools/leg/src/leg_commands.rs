@@ -1,17 +1,18 @@
 //! The commands that make a leg do something: home, move, stiffness, hold, stop, disarm, clear.
 
+mod path_file;
+
 use crate::connection::{LegArgs, Purpose};
-use crate::numbers::{azimuth_deg, direction, positive, seconds, tilt_deg, unit_vector};
+use crate::numbers::{azimuth_deg, direction, lead_s, positive, tilt_deg, unit_vector};
 use crate::options::Options;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_base::timed_path::TimedPath;
 use leg_host::leg_report;
 use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
 use leg_host::path_reader::{PathReader, PathSource};
-use std::fs::File;
+use path_file::PathFile;
 use std::io::{self, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Debug, clap::Subcommand)]
@@ -54,9 +55,9 @@ pub(crate) struct FollowArgs {
     /// shall change; or - for standard input.
     #[arg(value_name = "FILE")]
     path: PathBuf,
-    /// The time from the rest before the path to its first point, beside the run-up, s: how long a point may be on its way to
-    /// the leg. A point is sent when the third row after it is known.
-    #[arg(long = "lead", value_name = "SECONDS", value_parser = seconds, default_value = "0.2")]
+    /// The time from the rest before the path to its first point, beside the run-up, s, up to 3600: how long a point may be on its
+    /// way to the leg. A point is sent when the third row after it is known.
+    #[arg(long = "lead", value_name = "SECONDS", value_parser = lead_s, default_value = "0.2")]
     lead: Duration,
     #[command(flatten)]
     leg: LegArgs,
@@ -65,19 +66,19 @@ pub(crate) struct FollowArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct MoveArgs {
     /// The azimuth towards which the leg leans, degrees.
-    #[arg(long, value_name = "DEG", value_parser = azimuth_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = azimuth_deg)]
     azimuth: f64,
     /// The tilt from the vertical, degrees; a negative tilt is the opposite azimuth.
-    #[arg(long, value_name = "DEG", value_parser = tilt_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = tilt_deg)]
     tilt: f64,
     /// The pretension, N; as before if left out.
-    #[arg(long, alias = "level", value_name = "N", value_parser = positive, allow_negative_numbers = true, conflicts_with = "stiffness")]
+    #[arg(long, alias = "level", value_name = "N", value_parser = positive, conflicts_with = "stiffness")]
     pretension: Option<f64>,
     /// The bending stiffness, N·m/rad, in the place of a pretension: of the softest tilt, unless --towards is given.
-    #[arg(long, value_name = "NM_PER_RAD", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "NM_PER_RAD", value_parser = positive)]
     stiffness: Option<f64>,
     /// The azimuth of a push at the tip that meets the stiffness, degrees.
-    #[arg(long, value_name = "DEG", value_parser = azimuth_deg, allow_negative_numbers = true, requires = "stiffness")]
+    #[arg(long, value_name = "DEG", value_parser = azimuth_deg, requires = "stiffness")]
     towards: Option<f64>,
     #[command(flatten)]
     leg: LegArgs,
@@ -86,10 +87,10 @@ pub(crate) struct MoveArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct StiffnessArgs {
     /// The bending stiffness, N·m/rad: of the softest tilt, unless --towards is given.
-    #[arg(value_name = "NM_PER_RAD", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(value_name = "NM_PER_RAD", value_parser = positive)]
     stiffness: f64,
     /// The azimuth of a push at the tip that meets the stiffness, degrees.
-    #[arg(long, value_name = "DEG", value_parser = azimuth_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = azimuth_deg)]
     towards: Option<f64>,
     #[command(flatten)]
     leg: LegArgs,
@@ -122,35 +123,12 @@ impl FollowArgs {
                 operator.follow(&mut source, self.lead)
             });
         }
-        let path = whole_path(&self.path)?;
+        let file = PathFile::read(&self.path)?;
         run(&self.leg, Purpose::Use, options, |operator| {
-            operator.follow_whole(&path, self.lead)
+            let followed = operator.follow_whole(file.path(), self.lead);
+            followed.map_err(|error| file.placed(error))
         })
     }
-}
-
-/// The most rows of a path that is checked as a whole: an hour and more at 200 Hz.
-const ROWS_MAX: usize = 1_000_000;
-
-/// The path of a file.
-fn whole_path(path: &Path) -> Result<TimedPath, Failure> {
-    let name = path.display().to_string();
-    let file = File::open(path).map_err(|error| {
-        let sentence = format!("cannot read the path {name}: {error}");
-        Failure::refused(sentence, "give a file that exists, or - for standard input")
-    })?;
-    let mut reader = PathReader::new(BufReader::new(file), &name);
-    let mut rows = Vec::new();
-    while let Some(row) = reader.next_row()? {
-        rows.push(row);
-        if rows.len() > ROWS_MAX {
-            return Err(Failure::refused(
-                format!("the path {name} has more than {ROWS_MAX} rows"),
-                "stream it: `leg follow - < FILE`",
-            ));
-        }
-    }
-    Ok(TimedPath::new(&rows))
 }
 
 impl MoveArgs {

@@ -71,7 +71,7 @@ mod strikes;
 mod tune;
 mod ui;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use leg_base::failure::Failure;
 use leg_commands::LegCommand;
 use options::Options;
@@ -140,13 +140,23 @@ enum Command {
 /// The command line as clap describes it.
 #[must_use]
 pub fn command() -> clap::Command {
-    Cli::command()
+    negative_values(Cli::command())
+}
+
+/// Takes a negative number as a value everywhere, which is refused by its range, and not as an option that is not known.
+fn negative_values(command: clap::Command) -> clap::Command {
+    let command = command.mut_args(|arg| {
+        let takes_values = arg.get_action().takes_values();
+        arg.allow_negative_numbers(takes_values)
+    });
+    command.mut_subcommands(negative_values)
 }
 
 /// Runs the command that this process's arguments name, and prints its error on standard error.
 #[must_use]
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let matches = command().try_get_matches();
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => return output::usage(&error),
     };

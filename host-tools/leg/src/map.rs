@@ -25,10 +25,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
     /// Mass at the tip, kg.
-    #[arg(long, value_name = "KG", default_value = "1", value_parser = payload_kg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KG", default_value = "1", value_parser = payload_kg)]
     payload_kg: f64,
     /// Pretension, N; that of the rig if left out.
-    #[arg(long, alias = "level-n", value_name = "N", value_parser = finite, allow_negative_numbers = true)]
+    #[arg(long, alias = "level-n", value_name = "N", value_parser = finite)]
     pretension_n: Option<f64>,
     /// Columns of the map, at least 3.
     #[arg(long, default_value = "360", value_parser = clap::value_parser!(u32).range(3..))]
@@ -61,18 +61,21 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     if map.counts().feasible == 0 {
         return Err(nothing_feasible(&rig, args.payload_kg, &map));
     }
-    let pictures = match &args.csv {
-        Some(file) => map_csv::save_around(&map, file, || draw(args, &rig, &map))?,
-        None => draw(args, &rig, &map)?,
+    // What was found is told, whether it can be saved or not.
+    let saved = match &args.csv {
+        Some(file) => map_csv::save_around(&map, file, || draw(args, &rig, &map)),
+        None => draw(args, &rig, &map),
     };
+    let csv = args.csv.as_deref().filter(|_| saved.is_ok());
     let report = MapReport {
         rig: &rig,
         payload_kg: args.payload_kg,
         map: &map,
-        pictures: &pictures,
+        pictures: saved.as_deref().unwrap_or_default(),
         extremes: QuantityExtremes::all(&map),
     };
-    options.report(&report.json(), || report.table(args.csv.as_deref()))
+    options.report(&report.json(), || report.table(csv))?;
+    saved.map(|_| ())
 }
 
 /// The rig at the asked pretension, if the model accepts it with the payload.

@@ -99,8 +99,10 @@ impl Monitor {
         mut shown: impl FnMut(Duration, Option<&MonitorView>) -> Result<bool, Failure>,
     ) -> Result<(), Failure> {
         let end = self.length.map(|length| operator.now() + length);
+        let mut due = operator.now();
         loop {
-            let due = operator.now() + self.period;
+            // What a wait was too long is made up for, by one report at the most.
+            due = operator.now().max(due + self.period);
             let Some(reply) = unless_ended(operator.telemetry())? else {
                 return Ok(());
             };
@@ -161,6 +163,10 @@ impl Monitor {
         });
         // A terminal that has gone needs no restoring.
         let _ = ratatui::try_restore();
+        if terminal.show_cursor().is_err() {
+            // It would be tried again as it is dropped, and told to a standard error that has gone, too: a panic.
+            std::mem::forget(terminal);
+        }
         watched
     }
 }

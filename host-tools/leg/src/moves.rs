@@ -55,19 +55,25 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         ));
     };
     let failed = moved.iter().filter(|moved| !moved.passes()).count();
-    let plot = args.plots.as_deref();
-    let plot = plot.map(|directory| draw(worst, directory)).transpose()?;
+    // What was found is told, whether it can be drawn or not.
+    let drawn = args
+        .plots
+        .as_deref()
+        .map(|directory| draw(worst, directory));
+    let saved = drawn.transpose();
+    let plot = saved.as_ref().ok().and_then(Option::as_deref);
     let json = json_object! {
         seed: args.seed,
         failed: failed,
         passed: failed == 0,
         moves: &moved,
-        plot: plot.as_deref(),
+        plot: plot,
     };
     options.report(&json, || {
-        let chart = plot.as_deref().map(chart_line);
+        let chart = plot.map(chart_line);
         table(&moved) + &chart.unwrap_or_default()
     })?;
+    saved?;
     if failed == 0 {
         return Ok(());
     }

@@ -7,6 +7,9 @@ use std::time::Duration;
 /// The longest time that a command is given, s: a year.
 const SECONDS_MAX: f64 = 31_536_000.0;
 
+/// The longest lead of a path, s: an hour, of the three days in which the leg's count of ticks tells before from after.
+const LEAD_MAX_S: f64 = 3600.0;
+
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -79,9 +82,20 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
 
 /// A time above zero, s.
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
-    positive(text)?;
-    let seconds = number_in_range(text, 0.0..=SECONDS_MAX, " s")?;
-    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
+    time_up_to(text, SECONDS_MAX)
+}
+
+/// How long before its time a point is sent, s.
+pub(crate) fn lead_s(text: &str) -> Result<Duration, String> {
+    time_up_to(text, LEAD_MAX_S)
+}
+
+fn time_up_to(text: &str, max_s: f64) -> Result<Duration, String> {
+    let seconds = finite(text)?;
+    if seconds > 0.0 && seconds <= max_s {
+        return Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string());
+    }
+    Err(format!("it is not above 0 and at most {max_s} s"))
 }
 
 /// The horizontal unit vector of an azimuth.
@@ -96,7 +110,7 @@ pub(crate) fn direction(azimuth_deg: f64, tilt_deg: f64) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::seconds;
+    use super::{lead_s, seconds};
     use std::time::Duration;
 
     #[test]
@@ -104,6 +118,15 @@ mod tests {
         assert_eq!(seconds("1.5"), Ok(Duration::from_millis(1500)));
         for wrong in ["1e20", "1e9", "0", "-1", "inf", "NaN", "soon"] {
             assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_lead_that_the_count_of_ticks_does_not_hold_is_refused() {
+        assert_eq!(lead_s("3600"), Ok(Duration::from_secs(3600)));
+        for wrong in ["3601", "300000", "0", "-1"] {
+            let range = "it is not above 0 and at most 3600 s";
+            assert_eq!(lead_s(wrong), Err(range.into()), "{wrong}");
         }
     }
 }

@@ -73,8 +73,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     drop(link);
     let taken_s = resources::processor_s().zip(processor_s);
     let seconds = started.elapsed().as_secs_f64();
-    let plots = run_charts::save(&scenario.title, &summary.samples, &directory)
-        .map_err(|error| not_saved("charts", &directory, "--plots", &error))?;
+    // What was found is told, whether it can be drawn or not.
+    let saved = run_charts::save(&scenario.title, &summary.samples, &directory);
     let report = RunReport {
         title: &scenario.title,
         firmware: args.on.text(),
@@ -85,9 +85,10 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             .map(|(end, start)| summary.ticks as f64 / (end - start)),
         memory_mib: resources::memory_mib(),
         shows_resources: args.on == Emulation::Chip,
-        plots: &plots,
+        plots: saved.as_deref().unwrap_or_default(),
     };
     options.report(&report.json(), || report.table())?;
+    saved.map_err(|error| not_saved("charts", &directory, "--plots", &error))?;
     require_passed(&summary)
 }
 

@@ -42,11 +42,13 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         let now = wall_time_s(&operator).map(|now_s| (tick, now_s));
         save(file, &about, &scope, now)?;
     }
-    let plots = match &args.plots {
+    // What was read is told, whether it can be drawn or not.
+    let drawn = match &args.plots {
         Some(directory) => recorder_charts::save(&about.title, &scope.rows, directory)
-            .map_err(|error| not_saved("charts", directory, "--plots", &error))?,
-        None => Vec::new(),
+            .map_err(|error| not_saved("charts", directory, "--plots", &error)),
+        None => Ok(Vec::new()),
     };
+    let plots = drawn.as_deref().unwrap_or_default();
     let [before_s, after_s] = scope.sides_s();
     let signals: Vec<_> = recorded_signals::words(scope.report.signals).collect();
     let json = json_object! {
@@ -55,7 +57,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         faults: fault_names(&scope),
         before_s: before_s,
         after_s: after_s,
-        plots: &plots
+        plots: plots
     };
     options.report(&json, || {
         let [before_ms, after_ms] = [before_s, after_s].map(|time_s| 1000.0 * time_s);
@@ -72,7 +74,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             scope.rows.len(),
             signals.join(", ")
         )
-    })
+    })?;
+    drawn.map(|_| ())
 }
 
 /// What its charts are called.

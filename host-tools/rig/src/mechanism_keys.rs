@@ -2,6 +2,8 @@
 //! those who list every key of a file, and for its reading. Tendons and support are read by their positions in lists of their own
 //! or by the kind of the support: tests beside those compare them with this table.
 
+use leg_model::Quantity;
+
 /// A key of the mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MechanismKey {
@@ -72,6 +74,26 @@ pub fn find(section: &str, key: &str) -> Option<&'static MechanismKey> {
     let first = section.split('.').next().unwrap_or_default();
     let mut keys = MECHANISM_KEYS.iter();
     keys.find(|known| known.section == first && known.key == key)
+}
+
+/// Where the file gives a quantity: section and key. It does not give those of a single pose; tendons and support are
+/// checked where they are read.
+pub(crate) fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
+    Some(match quantity {
+        Quantity::BaseAnchors => ("geometry", "base_anchors_mm"),
+        Quantity::LegAnchors => ("geometry", "leg_anchors_mm"),
+        Quantity::UpperLength => ("geometry", "upper_mm"),
+        Quantity::JointLength => ("geometry", "joint_mm"),
+        Quantity::LegLength => ("geometry", "leg_mm"),
+        Quantity::LegMass => ("mass", "leg_kg"),
+        Quantity::LegCentroid => ("mass", "centroid_mm"),
+        Quantity::Gravity => ("mass", "gravity_m_per_s2"),
+        Quantity::TensionMin => ("tendon", "f_min_n"),
+        Quantity::TensionMax => ("tendon", "f_max_n"),
+        Quantity::Pretension => ("tendon", "pretension_n"),
+        Quantity::Tilt => ("workspace", "tilt_deg"),
+        _ => return None,
+    })
 }
 
 #[cfg(test)]

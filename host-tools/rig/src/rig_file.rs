@@ -6,6 +6,7 @@ pub mod derived;
 mod reading;
 mod support;
 mod tendon;
+mod whole_leg;
 
 pub use buckling::Buckling;
 pub use tendon::{ELONGATION_FACTOR, MEASURED_TENDON};

@@ -5,7 +5,7 @@ use leg_firmware::frame::Decoder;
 use leg_firmware::host_link::{BoardKind, HostReply};
 use leg_firmware::linked_leg::LinkedLeg;
 use leg_firmware::recorder::Recorder;
-use leg_firmware::sensors::Sensors;
+use leg_firmware::sensors::{Sensors, TICK_HZ};
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::TickReply;
@@ -44,7 +44,7 @@ pub struct Divergence {
     #[serde(skip)]
     other_ticks: u64,
     /// Requests of a host that one of the two did and the other refused: a set-point at a limit, which is rounded otherwise. From then on they
-    /// are led otherwise.
+    /// are led otherwise. And those that one of the two alone has answered, a second after it.
     #[serde(skip)]
     pub other_answers: u64,
 }
@@ -54,11 +54,16 @@ pub struct Divergence {
 struct Answers {
     decoder: Decoder,
     waiting: VecDeque<(u16, bool)>,
+    /// Ticks since the other one has answered as much.
+    ticks: u16,
 }
 
 /// For so many ticks the two may differ in state or faults: rounded otherwise, a limit is passed a little sooner or later.
 /// One that stays in another state has left it.
 pub const OTHER_TICKS_MAX: u64 = 8;
+
+/// Ticks for which an answer of one of the two may come alone: a second, in which a link of any board has given what waits.
+const ANSWERED_TICKS: u16 = TICK_HZ;
 
 impl Shadow {
     /// With a leg's settings, before its first tick.
@@ -97,6 +102,7 @@ impl Default for Answers {
         Self {
             decoder: Decoder::new(),
             waiting: VecDeque::new(),
+            ticks: 0,
         }
     }
 }
@@ -115,11 +121,26 @@ impl Answers {
         }
     }
 
-    /// Forgets what both have answered, and gives how many of them otherwise.
+    /// A tick: forgets what both have answered, and gives how many of them otherwise, with those that one alone has answered.
     fn compare(&mut self, other: &mut Self) -> u64 {
         let both = self.waiting.len().min(other.waiting.len());
         let pairs = self.waiting.drain(..both).zip(other.waiting.drain(..both));
-        pairs.filter(|(one, other)| one != other).count() as u64
+        let otherwise = pairs.filter(|(one, other)| one != other).count();
+        (otherwise + self.take_unanswered() + other.take_unanswered()) as u64
+    }
+
+    /// Forgets what the other one has not answered in time, and gives how many of them.
+    fn take_unanswered(&mut self) -> usize {
+        self.ticks = if self.waiting.is_empty() {
+            0
+        } else {
+            self.ticks + 1
+        };
+        if self.ticks <= ANSWERED_TICKS {
+            return 0;
+        }
+        self.ticks = 0;
+        self.waiting.drain(..).count()
     }
 }
 
@@ -170,4 +191,37 @@ fn largest<const N: usize>(single: &[f32; N], double: &[f64; N]) -> f64 {
     pairs
         .map(|(single, double)| (f64::from(*single) - double).abs())
         .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ANSWERED_TICKS, Answers};
+
+    /// Counts what is answered otherwise in some ticks.
+    fn otherwise(one: &mut Answers, other: &mut Answers, ticks: u16) -> u64 {
+        (0..ticks).map(|_| one.compare(other)).sum()
+    }
+
+    /// Answers are compared in their order, however late one of the two comes; one that never comes counts, whichever of them lacks it.
+    #[test]
+    fn an_answer_that_the_other_does_not_give_counts() {
+        for swapped in [false, true] {
+            let [mut one, mut other] = <[Answers; 2]>::default();
+            let mut count = |answers: [Option<(u16, bool)>; 2], ticks| {
+                one.waiting.extend(answers[0]);
+                other.waiting.extend(answers[1]);
+                if swapped {
+                    otherwise(&mut other, &mut one, ticks)
+                } else {
+                    otherwise(&mut one, &mut other, ticks)
+                }
+            };
+            assert_eq!(count([Some((1, true)), None], ANSWERED_TICKS), 0);
+            assert_eq!(count([None, Some((1, true))], ANSWERED_TICKS + 1), 0);
+            assert_eq!(count([Some((2, true)), Some((2, false))], 1), 1);
+            assert_eq!(count([Some((3, true)), None], ANSWERED_TICKS), 0);
+            assert_eq!(count([None, None], 1), 1);
+            assert_eq!(count([None, None], ANSWERED_TICKS + 1), 0);
+        }
+    }
 }

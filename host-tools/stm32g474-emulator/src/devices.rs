@@ -278,6 +278,13 @@ impl Devices {
         registers.is_set(self.debug_in_sleep)
     }
 
+    /// A debugger has both watchdogs stand still in a halt.
+    pub fn rest_watchdogs_in_halt(&mut self) {
+        for place in self.watchdog_halts {
+            self.dbgmcu.set_value(place, 1);
+        }
+    }
+
     /// A debugger has halted the processor for some cycles: the watchdogs that DBGMCU stops meanwhile count later.
     pub fn halt_watchdogs(&mut self, cycles: u64) {
         let halts = |place| self.dbgmcu.registers().is_set(place);

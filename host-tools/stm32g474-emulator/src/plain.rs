@@ -1,6 +1,6 @@
 //! Blocks that only keep what is written: SYSCFG and DBGMCU, whose bits others look at.
 
-use crate::device::{Context, Device, RegisterFile};
+use crate::device::{Context, Device, FieldPlace, RegisterFile};
 use crate::facts::Block;
 
 /// A block that keeps what is written.
@@ -33,6 +33,11 @@ impl Plain {
     #[must_use]
     pub fn registers(&self) -> &RegisterFile {
         &self.registers
+    }
+
+    /// Sets a field, as a debugger does.
+    pub fn set_value(&mut self, field: FieldPlace, value: u32) {
+        self.registers.set_value(field, value);
     }
 }
 

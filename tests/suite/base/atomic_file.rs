@@ -77,3 +77,22 @@ fn several_files_are_delivered_together_or_not_at_all() {
     made().commit().unwrap();
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 3);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_file_at_which_another_program_is_at_work_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("leg.mcap");
+    let (part, file) = PartFile::create(&path).unwrap();
+    let second = PartFile::create(&path).map(drop).unwrap_err();
+    assert_eq!(second.kind(), io::ErrorKind::ResourceBusy);
+    let sentence = second.to_string();
+    assert!(sentence.contains("leg.part.mcap"), "{sentence}");
+    // Once it is killed, what it leaves is left alone.
+    drop(file);
+    let left = part.keep().unwrap();
+    assert_eq!(PartFile::unfinished(&path), Some(left.clone()));
+    let (other, _file) = PartFile::create(&path).unwrap();
+    other.commit().unwrap();
+    assert!(path.exists() && left.exists());
+}

@@ -122,3 +122,20 @@ fn a_debugger_that_halts_a_driven_leg_resets_the_chip() -> Outcome {
     assert_eq!(reset_within(chip, 20 * MS), None);
     Ok(())
 }
+
+/// OpenOCD has both watchdogs rest in a halt as it attaches, whatever the leg does: the next tick that drives takes that back.
+#[test]
+fn a_debugger_that_has_the_watchdogs_rest_resets_a_driven_leg_too() -> Outcome {
+    let mut session = driving(&image(FirmwareImage::Stm32g474)?, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    chip.peripherals().devices.rest_watchdogs_in_halt();
+    // Four ticks.
+    assert_eq!(reset_within(chip, MS / 2), None);
+    let reset = Stop::Reset(ResetFlag::WindowWatchdog);
+    assert_eq!(chip.halt_by_debugger(CUT_MAX), Some(reset));
+    // One that is not driven may be halted for as long as somebody likes.
+    assert_eq!(identity_after(chip)?.reset, ResetCause::HungTick);
+    chip.peripherals().devices.rest_watchdogs_in_halt();
+    assert_eq!(chip.halt_by_debugger(500 * MS), None);
+    Ok(())
+}

@@ -18,6 +18,9 @@ const BRAKE_S: f64 = 0.15;
 const GENTLE_BRAKE_S: f64 = 0.2;
 const SHORT_BRAKE_S: f64 = 0.06;
 
+/// Part of the speed of the fastest motor up to which none waits for one that does not obey.
+const SLOW_PART: f64 = 0.15;
+
 /// A leg in the middle of a move, and the highest tension that its target asks for, as a part of the maximum.
 fn moving_leg(pretension_n: f64, payload_kg: f64) -> (Stand, f32) {
     let mut rig = paper();
@@ -52,7 +55,8 @@ fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
         "firmware/SAFETY.md",
         &[format!(
             "brake within {BRAKE_S} s by their counters, {GENTLE_BRAKE_S} s where the target asks a tendon for more than {NEAR_PART} of \
-             the maximum tension, {SHORT_BRAKE_S} s where the leg homes, where"
+             the maximum tension, {SHORT_BRAKE_S} s where the leg homes, where **current and tension disagree** and a motor that \
+             should go more than {SLOW_PART} times as fast as the fastest has lost a tenth of its speed as the leg is stopped"
         )],
     );
     for (pretension_n, payload_kg, near, time_s) in [
@@ -67,15 +71,59 @@ fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
     }
 }
 
-/// The others do not pull for long against it.
+/// The motors that go fast, and the others.
+fn fast_motors(stand: &Stand) -> (Vec<usize>, Vec<usize>) {
+    let speeds = stand.truth.speeds_rad_per_s.map(f64::abs);
+    let fastest = speeds.into_iter().fold(0.0, f64::max);
+    (0..3).partition(|&motor| speeds[motor] > SLOW_PART * fastest)
+}
+
+/// The time in which a leg brakes one of whose sensors fails, s: its current and its tension come to disagree.
+fn disagreeing_brake_s(moving: &Stand, defect: Defect) -> f64 {
+    let mut stand = moving.clone();
+    stand.plant().set_defect(defect, true);
+    let found_s = brake_s(&mut stand);
+    let named = faults(&stand);
+    assert!(named.has(Fault::CurrentDisagrees), "{defect:?}: {named:?}");
+    found_s
+}
+
+/// The others do not pull for long against it, unless it is hardly led.
 #[test]
 fn a_leg_whose_motor_is_not_counted_brakes_for_a_short_time() {
-    for motor in 0..3 {
-        let (mut stand, _) = moving_leg(70.0, 0.0);
-        stand.plant().set_defect(Defect::EncoderLost(motor), true);
-        let found_s = brake_s(&mut stand);
-        assert!(faults(&stand).has(Fault::CurrentDisagrees));
-        assert!((found_s - SHORT_BRAKE_S).abs() < 0.001, "{found_s} s");
+    let (stand, _) = moving_leg(70.0, 0.0);
+    let (fast, slow) = fast_motors(&stand);
+    assert!(fast.len() == 2 && slow.len() == 1);
+    let short = fast.into_iter().map(|motor| (motor, SHORT_BRAKE_S));
+    for (motor, time_s) in short.chain(slow.into_iter().map(|motor| (motor, BRAKE_S))) {
+        let found_s = disagreeing_brake_s(&stand, Defect::EncoderLost(motor));
+        assert!((found_s - time_s).abs() < 0.001, "{motor}: {found_s} s");
+    }
+}
+
+/// A current sensor that is wrong leaves its motor as it is: the leg is braked as any other. That of the motor that pays its tendon
+/// out, nearly without current, is named once the leg has come to its end.
+#[test]
+fn a_leg_whose_current_disagrees_while_its_motors_obey_is_braked_as_any_other() {
+    let (stand, _) = moving_leg(70.0, 0.0);
+    let (fast, _) = fast_motors(&stand);
+    let brakes_s = fast
+        .into_iter()
+        .map(|motor| disagreeing_brake_s(&stand, Defect::CurrentZero(motor)));
+    let on_its_way_s: Vec<f64> = brakes_s.filter(|&time_s| time_s > 0.0).collect();
+    let [found_s] = on_its_way_s[..] else {
+        panic!("{on_its_way_s:?}");
+    };
+    assert!((found_s - BRAKE_S).abs() < 0.001, "{found_s} s");
+    let (stand, part) = moving_leg(120.0, 1.0);
+    assert!(part > NEAR_PART, "{part}");
+    // Near the maximum tension more gently. Motor 1, from 1, is named near the end of the way.
+    for motor in [1, 2] {
+        let found_s = disagreeing_brake_s(&stand, Defect::CurrentZero(motor));
+        assert!(
+            (found_s - GENTLE_BRAKE_S).abs() < 0.001,
+            "{motor}: {found_s} s"
+        );
     }
 }
 

@@ -212,6 +212,11 @@ impl Leg {
 /// Named for its swing and for nothing else, in hold, within 2 s of when it begins, or sooner where it grows; at what the tip swings by then, mm,
 /// from farthest to farthest.
 fn require_held(what: &str, swing: &Swing) {
+    require_held_by(what, swing, Fault::Swings);
+}
+
+/// The same, by this name.
+fn require_held_by(what: &str, swing: &Swing, name: Fault) {
     const WITHIN_S: f64 = 2.0;
     const LARGEST_MM: f64 = 20.0;
     let said =
@@ -223,18 +228,27 @@ fn require_held(what: &str, swing: &Swing) {
         "{what}: {swing:?}"
     );
     assert_eq!(swing.state, State::Held, "{what}");
-    assert_eq!(swing.faults, FaultSet::single(Fault::Swings), "{what}");
+    assert_eq!(swing.faults, FaultSet::single(name), "{what}");
     assert!(swing.largest_mm < LARGEST_MM, "{what}: {swing:?}");
 }
 
-/// Cells that show what was 20 to 40 ms ago: the loop of the brake is beyond its phase margin, and the swing grows or stays.
+/// Cells that show what was 20 to 40 ms ago: the loop of the brake is beyond its phase margin, and the swing grows or stays. In one of these legs
+/// late cells and counters disagree on the pose before the swing is named: both names are right.
 #[test]
 fn a_swing_that_late_load_cells_drive_ends_in_hold() {
-    for (pose, late_ms) in POSES.into_iter().zip([[20, 25], [25, 30], [37, 40]]) {
+    require_said(
+        "firmware/SAFETY.md",
+        &["with **sensors disagree on the pose** where late cells show that sooner".into()],
+    );
+    for (pose, late_ms) in POSES.into_iter().zip([
+        [(20, Fault::Swings), (25, Fault::Residual)],
+        [(25, Fault::Swings), (30, Fault::Swings)],
+        [(37, Fault::Swings), (40, Fault::Swings)],
+    ]) {
         let sound = Leg::paper(pose);
-        for ms in late_ms {
+        for (ms, name) in late_ms {
             let swing = sound.clone().swung(Activity::Resting, 8 * ms, 4.0);
-            require_held(&format!("{ms} ms late, {pose:?}"), &swing);
+            require_held_by(&format!("{ms} ms late, {pose:?}"), &swing, name);
         }
         // With sound cells it rings down.
         let swing = sound.swung(Activity::Resting, 0, 3.0);

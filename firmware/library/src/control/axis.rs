@@ -11,6 +11,10 @@ use leg_model::Scalar;
 /// holds without voltage; without the decay the motor would keep drawing the last current. Scenario `hold` holds it.
 const RESTING_DECAY: f32 = 0.99;
 
+/// A motor that turns by no more than this stands, m/s: without its voltage it goes on by some micrometres, a hundredth of what it does at
+/// the speed of a ramp.
+const STANDING_M_PER_S: f32 = 5e-4;
+
 /// How far a motor that the maximum tension slows down may be behind its reference, m: a sixth of what would be a fault.
 const LIMITED_AHEAD_M: f32 = 1e-4;
 
@@ -181,6 +185,21 @@ impl<T: Scalar> Axis<T> {
     #[inline(always)]
     pub fn lead_within(&mut self, pulled_m: T, step_max_m: T, share: T) {
         self.step_m = clamp_symmetric((pulled_m - self.reference_m) * share, step_max_m);
+    }
+
+    /// What the motor leaves of its way, m.
+    pub fn dead_band_m(&self) -> T {
+        self.gains.dead_band_m
+    }
+
+    /// Whether the motor stands.
+    pub fn stands(&self) -> bool {
+        self.speed_m_per_s.abs() <= T::from(STANDING_M_PER_S)
+    }
+
+    /// How far the motor is led in a tick, m.
+    pub fn led_m(&self) -> T {
+        self.step_m
     }
 
     /// How far the motor goes in a tick, m, but no farther than it is led: at the maximum tension it stays behind.

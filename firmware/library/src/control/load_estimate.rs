@@ -203,14 +203,18 @@ impl<T: Scalar> LoadEstimator<T> {
         };
         let found_kg = self.payload.step(&payload_moments, moving);
         let payload_kg = self.payload.kg;
-        // At rest the load as a whole stays what it was, whichever part of it is the payload.
-        let (share, shifted_kg) = if moving {
-            (T::from(MOVING_SHARE), T::zero())
+        let share = if moving {
+            T::from(MOVING_SHARE)
         } else {
-            (self.push_share, found_kg)
+            // At rest the load as a whole stays what it was at the target, whichever part of it is the payload: a target whose
+            // tensions jump moves the leg.
+            let target = target.vector();
+            let shifted_nm = found_kg * mechanism.payload_lever;
+            self.push_nm[0].shift(shifted_nm * target.y);
+            self.push_nm[1].shift(-(shifted_nm * target.x));
+            self.push_share
         };
         for (i, push) in self.push_nm.iter_mut().enumerate() {
-            push.shift(-shifted_kg * per_kg[i]);
             push.step(excess[i] - payload_kg * per_kg[i], share);
         }
     }

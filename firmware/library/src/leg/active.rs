@@ -10,8 +10,7 @@ use super::station::{Station, StationKeeping};
 use super::stretch::StretchSearch;
 use crate::command::Compensation;
 use crate::control::{
-    CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory,
-    Unloaded, bounds,
+    CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, TargetDemand, Trajectory, Unloaded,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
@@ -57,9 +56,8 @@ impl<T: Scalar> Active<T> {
         shared.stream.leave();
         shared.target = None;
         shared.estimate = None;
-        // A leg whose tendons pull already stays as it is: relaxed first, it would swing. Half of the minimum tension is below
-        // what any target asks for, and above what is left in tendons that were paid out.
-        let taut_n = shared.mechanism.f_min_n * T::HALF;
+        // A leg whose tendons pull already stays as it is: relaxed first, it would swing.
+        let taut_n = shared.taut_n();
         let taut = measured.steady_tensions_n.iter().all(|&n| n > taut_n);
         if taut {
             // The last target may have been made for another load, and twisted otherwise.
@@ -125,7 +123,9 @@ impl<T: Scalar> Active<T> {
                 self.faults
                     .add(Fault::Swings, shared.damping.keeps_swinging());
                 let rests = self.tensioned && !self.trajectory.moving();
-                let given_way = self.given_way.update(rests && gives_way(shared, measured));
+                let given_way = self
+                    .given_way
+                    .update(rests && gives_way(shared, self.without_target, measured));
                 self.faults.add(Fault::Following, given_way);
                 Ok(())
             }
@@ -226,7 +226,11 @@ impl<T: Scalar> Active<T> {
     /// Whether it rests at its target with its load compensated, so that it can be left there.
     pub fn may_keep_station(&self, shared: &Shared<T>) -> bool {
         let compensated = shared.compensation == Compensation::Estimated;
-        shared.station.allowed && compensated && self.tensioned && !self.moving() && !shared.refused
+        shared.station.allowed
+            && compensated
+            && self.tensioned
+            && !self.moving()
+            && !self.without_target
     }
 
     /// Whether it is on its way, measures its tendons after homing, or corrects where it keeps station.
@@ -281,17 +285,7 @@ impl<T: Scalar> Active<T> {
             LoadEstimation::Filtered
         };
         if !self.tensioned {
-            self.slack.cycles = self.slack.cycles.saturating_add(1);
-            let f_min_n = shared.mechanism.f_min_n;
-            // A load that is left out may keep a tendon below what the target asks for.
-            let least_n = if shared.compensation == Compensation::Off {
-                f_min_n * T::HALF
-            } else {
-                f_min_n
-            };
-            let tensions_n = &measured.steady_tensions_n;
-            self.tensioned =
-                self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > least_n);
+            self.tensioned = self.slack.watch(shared, measured);
         }
         shared.estimate(measured, load_estimation)
     }
@@ -299,9 +293,6 @@ impl<T: Scalar> Active<T> {
     /// Computes the next target, and leads the axes there.
     #[inline(never)]
     fn aim(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
-        let Some(zero_m) = shared.zero_m else {
-            return Err(Error::NotConverged);
-        };
         if self.unloaded.is_some() {
             self.search_unloaded(shared, measured);
             return Ok(());
@@ -331,19 +322,18 @@ impl<T: Scalar> Active<T> {
                 return Err(error);
             }
         };
-        let mut pulled_m = zero_m;
+        let Some(mut pulled_m) = shared.zero_m else {
+            return Err(Error::NotConverged);
+        };
         let longer_m = self.offsets.advance();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
             *pulled -= target.unstretched_m[i] + longer_m[i];
         }
-        let servo_m_per_s = shared.limits.servo_m_per_s;
-        let speed_m_per_s = if taut {
-            servo_m_per_s
+        let step_max_m = if taut {
+            shared.limits.servo_step_m
         } else {
-            self.slack.reel_in(shared, &mut pulled_m);
-            bounds::min(shared.limits.ramp_m_per_s, servo_m_per_s)
+            self.slack.reel_in(shared, &mut pulled_m)
         };
-        let step_max_m = speed_m_per_s * T::from(TICK_S);
         let per_ticks = T::one() / T::from(f32::from(CYCLE_TICKS));
         for (axis, &pulled_m) in shared.axes.iter_mut().zip(&pulled_m) {
             axis.lead_within(pulled_m, step_max_m, per_ticks);

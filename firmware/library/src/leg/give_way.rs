@@ -19,8 +19,12 @@ pub const GIVEN_WAY_STEPS: u32 = (0.008 / SLOW_STEP_S) as u32;
 /// Whether a tendon is paid out because its tension is at the maximum, although no target asks for it: a leg that leans goes on sinking so,
 /// and a load cell that reads too much has it sink too. Where the load is estimated, there is a target for it, unless no pretension holds it.
 #[inline(always)]
-pub fn gives_way<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> bool {
-    if shared.compensation == Compensation::Estimated && !shared.refused {
+pub fn gives_way<T: Scalar>(
+    shared: &Shared<T>,
+    without_target: bool,
+    measured: &Measured<T>,
+) -> bool {
+    if shared.compensation == Compensation::Estimated && !without_target {
         return false;
     }
     let near_max_n = shared.mechanism.f_max_n * T::from(NEAR_MAX_PART);
@@ -61,14 +65,14 @@ mod tests {
                 axis.rest(0.01);
             }
             let measured = Measured::resting(behind_m.map(|behind| 0.01 - behind), tensions_n);
-            for (compensation, refused, expected) in [
+            for (compensation, without_target, expected) in [
                 (Compensation::Off, false, gives),
                 (Compensation::Frozen, false, gives),
                 (Compensation::Estimated, false, false),
                 (Compensation::Estimated, true, gives),
             ] {
-                (shared.compensation, shared.refused) = (compensation, refused);
-                let found = gives_way(&shared, &measured);
+                shared.compensation = compensation;
+                let found = gives_way(&shared, without_target, &measured);
                 assert_eq!(found, expected, "{behind_m:?} {tensions_n:?}");
             }
         }

@@ -1,7 +1,7 @@
 //! Held: the motors brake to a stop, and rest on their screws from then on.
 
 use super::shared::Shared;
-use crate::control::{TICK_S, bounds, ticks};
+use crate::control::{Axis, TICK_S, bounds, ticks};
 use leg_model::Scalar;
 
 /// Time in which a moving leg is braked, s: stopped at once, it would swing on with its payload, and double the tension of a
@@ -12,7 +12,7 @@ const BRAKE_S: f32 = 0.15;
 /// slower it is braked.
 const GENTLE_BRAKE_S: f32 = 0.2;
 
-/// The same where a motor may not obey, or something holds the leg, s: meanwhile the motors pull against it. No leg on its way is braked
+/// The same where a motor does not obey, or something may hold the leg, s: meanwhile the motors pull against it. No leg on its way is braked
 /// in less.
 const SHORT_BRAKE_S: f32 = 0.06;
 
@@ -30,6 +30,14 @@ const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 
 /// One that is led and goes by less than this in a tick does not turn, or is not counted, m: 0.01 mm/s.
 const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
+
+/// Part of the speed of the fastest motor up to which the others do not wait for one that does not obey: they go on by 0.3 mm of its tendon at the
+/// most, at 20 mm/s in 0.2 s.
+const SLOW_PART: f32 = 0.15;
+
+/// Part of its speed by which a motor goes on that obeys. On its way, and where the maximum tension does not slow it down, it goes by nearly all of it; one
+/// whose half bridge is open has lost a tenth before that is named.
+const OBEYED_PART: f32 = 0.9;
 
 /// What motors do that are braked.
 #[derive(Clone, Copy, Debug)]
@@ -53,17 +61,17 @@ pub struct Held<T> {
 }
 
 impl<T: Scalar> Held<T> {
-    /// From what the motors do now; `obeyed`: whether every motor does what it is asked, and nothing
-    /// holds the leg.
-    pub fn braking(shared: &Shared<T>, momentum: Momentum<T>, obeyed: bool) -> Self {
+    /// From what the motors do now; `hindered`: whether a motor does not obey, or something may hold
+    /// the leg.
+    pub fn braking(shared: &Shared<T>, momentum: Momentum<T>, hindered: bool) -> Self {
         let steps_m = momentum
             .steps_m
             .map(|step| if stands(step) { T::zero() } else { step });
         let still = steps_m.iter().all(|&step| step == T::zero());
-        let brake_s = match (obeyed, is_near_max(shared)) {
-            (false, _) => SHORT_BRAKE_S,
-            (true, true) => GENTLE_BRAKE_S,
-            (true, false) => BRAKE_S,
+        let brake_s = match (hindered, is_near_max(shared)) {
+            (true, _) => SHORT_BRAKE_S,
+            (false, true) => GENTLE_BRAKE_S,
+            (false, false) => BRAKE_S,
         };
         let [ticks, short, rest] = [brake_s, SHORT_BRAKE_S, REST_BRAKE_S].map(ticks);
         let to_end = match momentum.ticks_to_end {
@@ -132,6 +140,17 @@ impl<T: Scalar> Held<T> {
 /// Whether a motor that goes so far in a tick, m, stands.
 fn stands<T: Scalar>(step_m: T) -> bool {
     step_m.abs() <= T::from(STILL_STEP_M)
+}
+
+/// Whether each motor that is led fast goes on nearly as it is led. One that the maximum tension slows down does not, either.
+pub fn is_obeyed<T: Scalar>(shared: &Shared<T>) -> bool {
+    let led_m = shared.axes.each_ref().map(Axis::led_m);
+    let fastest_m = led_m.map(T::abs).into_iter().fold(T::zero(), bounds::max);
+    let mut led = shared.axes.iter().zip(led_m);
+    led.all(|(axis, led_m)| {
+        led_m.abs() <= fastest_m * T::from(SLOW_PART)
+            || axis.moved_m() * led_m >= led_m * led_m * T::from(OBEYED_PART)
+    })
 }
 
 /// Whether a tendon should pull nearly by the maximum tension. What its load cell shows may be the fault.

@@ -1,7 +1,7 @@
 //! What the leg is doing, and what only that needs.
 
 use super::active::Active;
-use super::held::{Held, Momentum};
+use super::held::{Held, Momentum, is_obeyed};
 use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
@@ -161,7 +161,9 @@ impl<T: Scalar> Mode<T> {
         trust: Trust,
     ) -> Self {
         if state == State::Held && trust.counters {
-            let held = Held::braking(shared, momentum, trust.motors);
+            // Where a current is in doubt a motor may not obey, or a sensor is wrong.
+            let obeyed = trust.currents || is_obeyed(shared);
+            let held = Held::braking(shared, momentum, !(trust.free && obeyed));
             if held.brakes() {
                 if trust.cells {
                     shared.lowest_m = held.lowest_m(&measured.pulled_m);
@@ -172,6 +174,7 @@ impl<T: Scalar> Mode<T> {
             }
         }
         shared.come_to_rest(state, measured);
+        shared.forget_slack(state, trust.unfaulted, measured);
         match state {
             State::Boot => Self::boot(),
             State::Disarmed => Self::Disarmed,
@@ -182,13 +185,13 @@ impl<T: Scalar> Mode<T> {
                     &limits.homing,
                     &measured.pulled_m,
                     limits.jogs.each_ref().map(HaulLimit::new),
-                    limits.dead_band_m,
+                    shared.dead_band_m(),
                 ))
             }
             State::Active => Self::Active(Active::begin(shared, measured)),
             State::Held => Self::Held(Held::resting()),
             State::RampingDown => Self::RampingDown(RampingDown::new(
-                shared.limits.relax_ticks,
+                &shared.limits,
                 measured.pulled_m,
                 trust.pose,
             )),
@@ -205,10 +208,15 @@ pub struct Trust {
     pub pose: bool,
     /// The counters: no fault is latched that they may cause.
     pub counters: bool,
-    /// The motors: none is known not to do what it is asked, and nothing is known to hold the leg.
-    pub motors: bool,
+    /// The leg: nothing is known that may hold it. A hand that holds the tip of a moving leg leaves a tendon slack first, while the others are
+    /// stretched by all that their motors still go.
+    pub free: bool,
+    /// The currents: none disagrees with its tension.
+    pub currents: bool,
     /// The load cells: no fault is latched that one may cause.
     pub cells: bool,
+    /// Whether no fault is latched but limits.
+    pub unfaulted: bool,
 }
 
 /// What one tick of a mode comes to.
@@ -263,8 +271,10 @@ mod tests {
             let trust = Trust {
                 pose: true,
                 counters: true,
-                motors: true,
+                free: true,
+                currents: true,
                 cells,
+                unfaulted: true,
             };
             let [_, found_m, _] = Mode::Active(active).momentum(&shared, trust).steps_m;
             let expected_m = if goes_on { step_m } else { 0.0 };

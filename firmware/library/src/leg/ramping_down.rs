@@ -1,13 +1,16 @@
 //! Ramping down: the leg follows no command, and its tendons are paid out by their counters alone.
 
 use super::phase::Phase;
-use super::shared::Shared;
+use super::shared::{LegLimits, Shared};
 use crate::control::{AxisGoal, Measured, bounds, ticks};
 use leg_model::Scalar;
 
 /// A tendon this near to its goal, beside the servo's dead band, has arrived, m: a fifth of the slack of a relaxed tendon, so that one
 /// that stops there is slack.
 const ARRIVED_M: f32 = 2e-5;
+
+/// Part of the travel from which on a tendon was paid out by the whole of it, but for its rounding.
+const WHOLE_PART: f32 = 0.999;
 
 /// Time after which a motor that did not arrive is waited for no longer, s, beside twice the time that the way takes: for
 /// a short way, on which a motor has to start and to stop.
@@ -26,13 +29,14 @@ pub struct RampingDown<T> {
 
 impl<T: Scalar> RampingDown<T> {
     /// From where the tendons are. With `trusted`, pose and zero are known: a leg that hangs straight down is made slack, no
-    /// farther; every other one is paid out by [`relax_travel_m`](crate::settings::Limits::relax_travel_m).
-    pub fn new(relax_ticks: u32, rest_m: [T; 3], trusted: bool) -> Self {
+    /// farther. Without, a tendon is led to where the last ramp down made it slack, where that is known. Every other one is paid out by
+    /// [`relax_travel_m`](crate::settings::Limits::relax_travel_m).
+    pub fn new(limits: &LegLimits<T>, rest_m: [T; 3], trusted: bool) -> Self {
         Self {
             rest_m,
             trusted,
             goals: None,
-            ticks_left: ticks(GRACE_S) + 2 * relax_ticks,
+            ticks_left: ticks(GRACE_S) + 2 * limits.relax_ticks,
         }
     }
 
@@ -42,7 +46,7 @@ impl<T: Scalar> RampingDown<T> {
         self.trusted
     }
 
-    /// One tick: true when every tendon has arrived, or a motor did not in time.
+    /// One tick: true when every tendon has arrived and stands, or a motor did not in time.
     #[inline(never)]
     pub fn relax(&mut self, phase: Phase, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {
         if self.goals.is_none() && phase == Phase::Estimate {
@@ -52,15 +56,26 @@ impl<T: Scalar> RampingDown<T> {
         let goals = *self
             .goals
             .get_or_insert_with(|| goals(shared, self.rest_m, self.trusted));
-        let near = shared.limits.dead_band_m + T::from(ARRIVED_M);
+        let near = shared.dead_band_m() + T::from(ARRIVED_M);
         let mut arrived = true;
         for ((axis, goal), &pulled) in shared.axes.iter_mut().zip(&goals).zip(&measured.pulled_m) {
             axis.lead(goal, T::one());
-            arrived &= (pulled - goal.pulled_m).abs() <= near;
+            // One that turns yet would go on when the drivers are off.
+            arrived &= (pulled - goal.pulled_m).abs() <= near && axis.stands();
         }
         self.ticks_left = self.ticks_left.saturating_sub(1);
         // A tick has no time for an estimate and for the next mode to begin.
-        (arrived || self.ticks_left == 0) && phase != Phase::Estimate
+        let ends = (arrived || self.ticks_left == 0) && phase != Phase::Estimate;
+        if ends {
+            // One that was paid out by the whole travel may pull yet.
+            let farthest_m = shared.limits.relax_travel_m * T::from(WHOLE_PART);
+            let led = shared.slack_m.iter_mut().zip(&goals).zip(self.rest_m);
+            for ((slack, goal), rest_m) in led {
+                let slackens = arrived && rest_m - goal.pulled_m < farthest_m;
+                *slack = if slackens { goal.pulled_m } else { -T::MAX };
+            }
+        }
+        ends
     }
 }
 
@@ -68,7 +83,12 @@ impl<T: Scalar> RampingDown<T> {
 fn goals<T: Scalar>(shared: &Shared<T>, rest_m: [T; 3], trusted: bool) -> [AxisGoal<T>; 3] {
     let limits = &shared.limits;
     let mut travels_m = [limits.relax_travel_m; 3];
-    if trusted && let Some(slack_m) = slack_m(shared) {
+    let slack_m = if trusted {
+        slack_m(shared)
+    } else {
+        Some(shared.slack_m)
+    };
+    if let Some(slack_m) = slack_m {
         for ((travel, slack), rest) in travels_m.iter_mut().zip(slack_m).zip(rest_m) {
             *travel = bounds::max(bounds::min(rest - slack, *travel), T::zero());
         }
@@ -199,6 +219,57 @@ mod tests {
         }
     }
 
+    /// A tendon is paid out to where the last ramp down led it, or by the travel where that is farther.
+    #[test]
+    fn a_leg_that_was_relaxed_is_slack_where_it_was() {
+        let mut shared = shared();
+        let travel_m = shared.limits.relax_travel_m;
+        let rest_m = [0.01, 0.02, 0.03];
+        let slack_m = [0.5 * travel_m, 0.0, 2.0 * travel_m];
+        for (i, (rest, slack)) in rest_m.iter().zip(slack_m).enumerate() {
+            shared.slack_m[i] = rest - slack;
+        }
+        let goals = goals(&shared, rest_m, false);
+        for ((goal, rest), slack) in goals.iter().zip(rest_m).zip(slack_m) {
+            let paid_out_m = rest - goal.pulled_m;
+            assert!(
+                (paid_out_m - slack.min(travel_m)).abs() < 1e-9,
+                "{paid_out_m} m"
+            );
+        }
+    }
+
+    /// What the next ramp down relies on: where this one led a tendon to where it is slack, by the pose or by the ramp before. One that went by the
+    /// whole travel may pull yet, and so may all where a motor did not come.
+    #[test]
+    fn a_ramp_that_ends_notes_where_tendons_are_slack() {
+        let rest_m = [0.01; 3];
+        let whole_m = shared().limits.relax_travel_m;
+        let slack_m = [0.2, 0.9, 2.0].map(|part| 0.01 - part * whole_m);
+        for (trusted, comes) in [(true, true), (true, false), (false, true), (false, false)] {
+            let mut shared = shared();
+            if trusted {
+                let lengths_m = shared.limits.slack_lengths_m;
+                let zero = |i: usize| slack_m[i] + lengths_m[i];
+                shared.zero_m = Some([zero(0), zero(1), zero(2)]);
+            } else {
+                shared.slack_m = slack_m;
+            }
+            let mut ramp = RampingDown::new(&shared.limits, rest_m, trusted);
+            let led_m = goals(&shared, rest_m, trusted).map(|goal| goal.pulled_m);
+            let shown = measured(if comes { led_m } else { rest_m });
+            while !ramp.relax(Phase::Command, &mut shared, &shown) {}
+            for (i, found_m) in shared.slack_m.into_iter().enumerate() {
+                let expected_m = if comes && i < 2 {
+                    slack_m[i]
+                } else {
+                    -f64::MAX
+                };
+                assert!((found_m - expected_m).abs() < 1e-9, "{trusted} {comes} {i}");
+            }
+        }
+    }
+
     /// The ramp ends once every motor is at its goal; where one does not come, after twice the time that it should take and
     /// half a second.
     #[test]
@@ -207,8 +278,7 @@ mod tests {
         let travel_m = shared.limits.relax_travel_m;
         let rest_m = [0.01; 3];
         let late = 4000 + 2 * shared.limits.relax_ticks;
-        let begin =
-            |shared: &Shared<f64>| RampingDown::new(shared.limits.relax_ticks, rest_m, false);
+        let begin = |shared: &Shared<f64>| RampingDown::new(&shared.limits, rest_m, false);
         let there_m = rest_m.map(|rest| rest - travel_m);
         let mut arrived = begin(&shared);
         for (phase, ends) in [

@@ -5,7 +5,7 @@ use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, Friction, JogBounds, LoadEstimation,
     Measured, Mechanism, MotionLimits, Play, PretensionSearch, REACHED, Stream, StreamLimits,
-    SwingDamping, Target, TargetGenerator, Turn, bounds, ticks,
+    SwingDamping, TICK_S, Target, TargetGenerator, Turn, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
@@ -24,7 +24,6 @@ pub struct Shared<T> {
     pub targets: TargetGenerator<T>,
     pub damping: SwingDamping<T>,
     pub play: Play<T>,
-    pub compensation: Compensation,
     /// Length of each tendon without tension when the board started, m.
     pub zero_m: Option<[T; 3]>,
     /// The last target, and the residual of the last estimate, m.
@@ -34,12 +33,19 @@ pub struct Shared<T> {
     pub f_max_n: T,
     /// No tendon is paid out beyond this, m.
     pub lowest_m: [T; 3],
+    /// Where the last ramp down led each tendon that it knew to be slack there, m; −MAX where that is not known.
+    pub slack_m: [T; 3],
     /// Whether a command or a pose was refused, until another one is accepted.
     pub refused: bool,
     /// Tendon at which homing failed the last time, from 1; 0 for none.
     pub failed_tendon: u8,
     /// What the current outputs show.
     pub current_outputs: CurrentOutputs,
+    pub compensation: Compensation,
+    /// Whether the leg was homed and not armed since.
+    pub just_homed: bool,
+    /// Whether it showed a load straight down, and has its zero from then.
+    pub load_seen: bool,
     pub limits: LegLimits<T>,
     pub pretension: PretensionSearch<T>,
     pub mechanism: Mechanism<T>,
@@ -50,10 +56,6 @@ pub struct Shared<T> {
     pub friction: [Friction<T>; 3],
     /// Elongation of the tendons over that of the settings.
     pub elongation_factor: T,
-    /// Whether the leg was homed and not armed since.
-    pub just_homed: bool,
-    /// Whether it showed a load straight down, and has its zero from then.
-    pub load_seen: bool,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -75,15 +77,13 @@ pub struct LegLimits<T> {
     pub homing: Homing,
     pub ramp_m_per_s: T,
     pub relax_travel_m: T,
-    /// The most that a motor leaves of its way, m.
-    pub dead_band_m: T,
     /// Ticks that this takes at that speed.
     pub relax_ticks: u32,
     /// Lengths of the tendons of a leg that hangs straight down, with their slack, m.
     pub slack_lengths_m: [T; 3],
     pub taut_cycles: u32,
-    /// The fastest that every motor follows, m/s.
-    pub servo_m_per_s: T,
+    /// The farthest that every motor follows in a tick, m.
+    pub servo_step_m: T,
     pub tilt_max_sine: T,
     /// Part of the square of what a tension is beyond the maximum to which a tendon gives way, 1/N.
     pub give_per_n: T,
@@ -111,10 +111,9 @@ impl<T: Scalar> LegLimits<T> {
             homing: settings.homing,
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),
-            dead_band_m: settings.greatest(|servo| servo.dead_band_m).into(),
             relax_ticks: ticks(limits.relax_travel_m / limits.ramp_m_per_s),
             taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
-            servo_m_per_s: settings.least(|servo| servo.speed_m_per_s).into(),
+            servo_step_m: T::from(settings.least(|servo| servo.speed_m_per_s)) * T::from(TICK_S),
             tilt_max_sine: T::from(settings.tilt_max_sine) * T::from(REACHED),
             give_per_n: T::from(GIVE_PART / settings.greatest(|servo| servo.f_max_band_n)),
         })
@@ -168,6 +167,7 @@ impl<T: Scalar> Shared<T> {
             estimate: None,
             f_max_n: settings.f_max_n.into(),
             lowest_m: [T::zero(); 3],
+            slack_m: [-T::MAX; 3],
             refused: false,
             failed_tendon: 0,
             current_outputs: settings.current_outputs,
@@ -180,6 +180,12 @@ impl<T: Scalar> Shared<T> {
             just_homed: false,
             load_seen: false,
         }
+    }
+
+    /// The most that a motor leaves of its way, m.
+    pub fn dead_band_m(&self) -> T {
+        let [a, b, c] = self.axes.each_ref().map(Axis::dead_band_m);
+        bounds::max(bounds::max(a, b), c)
     }
 
     /// Every axis stays where it is; sets how far and at which tension a tendon may be paid out in a state.

@@ -36,11 +36,6 @@ impl FaultSet {
         .union(Self::single(Fault::EncoderReversed))
         .union(Self::single(Fault::Following));
 
-    /// Those in which the motors may pull against one that does not obey, or against what holds the leg: it is braked for a short time. A hand that
-    /// holds the tip of a moving leg leaves a tendon slack first, while the others are stretched by all that their motors still go.
-    pub const HINDERED: Self =
-        Self::single(Fault::CurrentDisagrees).union(Self::single(Fault::Slack));
-
     /// Those that say that a counter has not counted its tendon: the zero goes with them.
     pub const LOSES_ZERO: Self =
         Self::single(Fault::EncoderJump).union(Self::single(Fault::EncoderReversed));

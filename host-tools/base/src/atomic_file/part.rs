@@ -1,6 +1,6 @@
 //! A file that grows for long, and can be found where its program is killed meanwhile.
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
@@ -20,7 +20,8 @@ impl PartFile {
     /// Makes the directory of `to` and the file. One that is there is left alone: this one is `leg.part2.mcap` then.
     ///
     /// # Errors
-    /// The system's; a directory or a device is where the file has to go.
+    /// The system's; a directory or a device is where the file has to go; [`ErrorKind::ResourceBusy`] where another program is
+    /// at work on it.
     pub fn create(to: &Path) -> io::Result<(Self, File)> {
         super::require_file(to)?;
         if let Some(directory) = to.parent() {
@@ -30,10 +31,11 @@ impl PartFile {
             let part = part_path(to, number);
             match File::create_new(&part) {
                 Ok(file) => {
+                    lock(&file);
                     let (to, part) = (to.into(), TempPath::try_from_path(part)?);
                     return Ok((Self { to, part }, file));
                 }
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => require_idle(&part)?,
                 Err(error) => return Err(error),
             }
         }
@@ -61,6 +63,27 @@ impl PartFile {
     pub fn unfinished(to: &Path) -> Option<PathBuf> {
         Some(part_path(to, 1)).filter(|part| part.exists())
     }
+}
+
+/// Marks a file as one at which a program is at work, for as long as it is open. Elsewhere than on Unix nobody else could read it
+/// then.
+fn lock(file: &File) {
+    if cfg!(unix) {
+        // A file system without locks: it stays without the mark.
+        let _ = file.lock();
+    }
+}
+
+/// Refuses a part at which a program is at work: whichever finished last would replace the other's file.
+fn require_idle(part: &Path) -> io::Result<()> {
+    if cfg!(unix)
+        && let Ok(file) = File::open(part)
+        && let Err(TryLockError::WouldBlock) = file.try_lock()
+    {
+        let sentence = format!("another program is writing it, as {}", part.display());
+        return Err(io::Error::new(ErrorKind::ResourceBusy, sentence));
+    }
+    Ok(())
 }
 
 fn part_path(to: &Path, number: u32) -> PathBuf {

@@ -247,8 +247,6 @@ const fn cuts_off(defect: Defect) -> bool {
             | Defect::CurrentOffset(_)
             | Defect::CurrentFullScale(_)
             | Defect::CurrentDead(_)
-            // A motor that shows no current is taken for one that is not connected, against which the others pull for a short time.
-            | Defect::CurrentZero(_)
             | Defect::EncoderLost(_)
             | Defect::EncoderReversed(_)
             | Defect::EncoderSlipping(_)

@@ -30,19 +30,43 @@ pub(super) struct CutOff {
 }
 
 impl CutOff {
-    /// Of a leg all of whose drivers switch their motors off, where one is struck by a defect. A motor that stops by itself does so here, too.
+    /// Of a leg all of whose drivers switch their motors off, where one is struck by a defect. A motor that stops by itself does so here, too. Any
+    /// other leg goes on until a fault is named, s after the strike, and may be faster then: it may do as much as a sound one that is cut off at
+    /// that time.
     ///
     /// # Errors
     /// As the simulation.
-    pub fn new(prepared: &PreparedLeg, defect: Defect) -> Result<Self, String> {
+    pub fn new(
+        prepared: &PreparedLeg,
+        defect: Defect,
+        named_s: Option<f64>,
+    ) -> Result<Self, String> {
+        let (moves, cut_off_s) = stops_by_itself(defect);
+        let struck = Self::stopped_after(prepared, moves, cut_off_s)?;
+        // With what stops it by itself it would be the strike itself until it is named: a bar that judges nothing.
+        let Some(named_s) = named_s.filter(|_| moves.is_none()) else {
+            return Ok(struck);
+        };
+        let named = Self::stopped_after(prepared, None, named_s)?;
+        Ok(Self {
+            tension_n: struck.tension_n.max(named.tension_n),
+            tip_mm: struck.tip_mm.max(named.tip_mm),
+        })
+    }
+
+    /// Of one that has a defect, and whose drivers do so a time after the strike, s.
+    fn stopped_after(
+        prepared: &PreparedLeg,
+        moves: Option<Defect>,
+        cut_off_s: f64,
+    ) -> Result<Self, String> {
         let mut stand = prepared.stand.clone();
         let struck_s = stand.time_s();
-        let (moves, cut_off_s) = stops_by_itself(defect);
         if let Some(moves) = moves {
             stand.plant().set_defect(moves, true);
         }
         let mut found = Self::default();
-        while stand.time_s() < struck_s + WATCHED_S {
+        while stand.time_s() < struck_s + cut_off_s + WATCHED_S {
             let off = stand.time_s() >= struck_s + cut_off_s;
             for motor in 0..3 {
                 stand.plant().set_defect(Defect::DriverFault(motor), off);
@@ -73,9 +97,9 @@ impl CutOff {
 const fn stops_by_itself(defect: Defect) -> (Option<Defect>, f64) {
     match defect {
         Defect::MotorJammed(_) => (Some(defect), 0.0),
-        Defect::DirectionStuck(_) | Defect::HalfBridgeOpenOutwards(_) => {
-            (Some(defect), CONTRADICTED_S)
-        }
+        Defect::DirectionStuck(_)
+        | Defect::HalfBridgeOpen(_)
+        | Defect::HalfBridgeOpenOutwards(_) => (Some(defect), CONTRADICTED_S),
         // A motor whose tendon seems to be at the maximum tension at once is stopped.
         Defect::CellGainStep(i) | Defect::CellOffsetStep(i) => (Some(Defect::MotorJammed(i)), 0.0),
         _ => (None, 0.0),

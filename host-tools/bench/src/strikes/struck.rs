@@ -117,7 +117,7 @@ impl Struck {
         let Some(defect) = defect.filter(|_| bars.cut_off && !within) else {
             return bars;
         };
-        match CutOff::new(prepared, defect) {
+        match CutOff::new(prepared, defect, self.named_s) {
             Ok(cut_off) => cut_off.widened(bars, f_max_n),
             Err(error) => {
                 self.failures.push(error);

@@ -17,7 +17,7 @@ const MOVE_TIME: Duration = Duration::from_secs(60);
 
 impl Operator {
     /// Does `work` with keep-alives, and leaves the leg in hold however that ends. A leg that obeyed nothing
-    /// of it is left as it was.
+    /// of it is left as it was, and so is one that another host has stopped or disarmed: a stop would end its way down.
     ///
     /// # Errors
     /// [`OperatorError::CommandTimeTooShort`] before any work. [`OperatorError::ConnectionLost`] by the work;
@@ -30,7 +30,8 @@ impl Operator {
         self.keeps_alive = true;
         let result = work(self);
         self.keeps_alive = false;
-        let halted = if self.drives { self.halt() } else { Ok(()) };
+        let driven = self.drives && !result.as_ref().is_err_and(is_overtaken);
+        let halted = if driven { self.halt() } else { Ok(()) };
         match (result, halted) {
             // Without a line there can be no stop, and its error says what the leg does then.
             (Err(error @ OperatorError::ConnectionLost(..)), _) => Err(error),
@@ -191,4 +192,17 @@ pub(super) fn unlimited(
         return Err(OperatorError::Limited(asked, Box::new(*telemetry)));
     }
     Ok(())
+}
+
+/// Whether a command was refused because a stop or a disarm came first.
+fn is_overtaken(error: &OperatorError) -> bool {
+    matches!(
+        error,
+        OperatorError::Refused(
+            _,
+            HostRefusal::Command(
+                CommandRefusal::Superseded | CommandRefusal::State(State::RampingDown)
+            )
+        )
+    )
 }

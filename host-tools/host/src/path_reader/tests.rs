@@ -47,7 +47,7 @@ fn what_is_wrong_with_a_row_is_said_with_its_line() {
         ),
         (
             "time_s,azimuth_deg,tilt_deg\n0,0,x\n",
-            "line 2: column 3: invalid float literal",
+            "line 2: column 3, tilt_deg: `x` is no number",
         ),
         (
             "time_s,azimuth_deg,tilt_deg\n0,0,NaN\n",
@@ -70,8 +70,16 @@ fn what_is_wrong_with_a_row_is_said_with_its_line() {
             "line 2: it gives both pretension_n and stiffness_nm_per_rad",
         ),
         (
-            "time_s,azimuth_deg,tilt_deg,force_n\n0,0,1,2\n",
-            "unknown field `force_n`",
+            "time_s,azimuth_deg,tilt_deg\n,0,1\n",
+            "line 2: column 1, time_s: `` is no number",
+        ),
+        (
+            "\ntime_s,azimuth_deg,tilt_deg,force_n\n0,0,1,2\n",
+            "path.csv, line 2: column 4, `force_n`, is not known",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg,time_s\n0,0,1,2\n",
+            "line 1: column 4, time_s, is there twice",
         ),
     ] {
         let refusal = rows(text).err().map(|failure| failure.to_string());

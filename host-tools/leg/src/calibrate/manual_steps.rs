@@ -3,7 +3,7 @@
 use crate::connection::LegConnection;
 use crate::output::note;
 use leg_base::failure::Failure;
-use leg_base::text_input;
+use leg_base::text_input::{self, Line};
 use leg_host::operator::Operator;
 use leg_sim::plant::Plant;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -36,19 +36,25 @@ pub(crate) fn confirm(connection: &mut LegConnection, step: &str) -> Result<(), 
     }
 }
 
-/// Asks the user for a step and waits for the Enter key.
+/// Asks the user for a step and waits for the Enter key alone: whoever writes anything does not agree.
 fn ask(operator: &mut Operator, step: &str) -> Result<(), Failure> {
     note(&format!("leg: {step}, then press Enter"));
     let (sender, entered) = channel();
     std::thread::spawn(move || {
         let line = text_input::next_line(&mut std::io::stdin().lock());
         // Nobody waits any more if the user has ended the calibration.
-        let _ = sender.send(matches!(line, Ok(Some(_))));
+        let _ = sender.send(line.ok().flatten());
     });
     loop {
         match entered.recv_timeout(POLL_TIME) {
-            Ok(true) => return Ok(()),
-            Ok(false) | Err(RecvTimeoutError::Disconnected) => {
+            Ok(Some(Line::Whole(line))) if line.trim_ascii().is_empty() => return Ok(()),
+            Ok(Some(_)) => {
+                return Err(Failure::refused(
+                    "declined: nothing was moved for this step",
+                    "press Enter alone to go on",
+                ));
+            }
+            Ok(None) | Err(RecvTimeoutError::Disconnected) => {
                 let help = "answer on the terminal, or try with --on sim";
                 return Err(Failure::refused("standard input has ended", help));
             }

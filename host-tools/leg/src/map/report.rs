@@ -161,8 +161,10 @@ impl MapReport<'_> {
     fn files(&self, csv: Option<&Path>) -> String {
         let picture = |path: &PathBuf| format!("  {}\n", relative_path(path).display());
         let pictures: String = self.pictures.iter().map(picture).collect();
+        let heading = "Pictures, each as .svg, .png and .pdf:\n";
+        let heading = if pictures.is_empty() { "" } else { heading };
         let csv = csv.map(|path| format!("CSV: {}\n", relative_path(path).display()));
         let csv = csv.unwrap_or_default();
-        format!("Pictures, each as .svg, .png and .pdf:\n{pictures}{csv}")
+        format!("{heading}{pictures}{csv}")
     }
 }

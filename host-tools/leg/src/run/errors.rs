@@ -29,17 +29,19 @@ pub(super) fn run(
         ));
     }
     let chart = sensitivity::chart(&scenario.title, &all);
-    let file = plot::save(&chart, &directory.join("errors"))
-        .map_err(|error| not_saved("chart", directory, "--plots", &error))?;
+    // What was found is told, whether it can be drawn or not.
+    let saved = plot::save(&chart, &directory.join("errors"))
+        .map_err(|error| not_saved("chart", directory, "--plots", &error));
     options.report(&all, || {
+        let chart = saved.as_deref().map(chart_line).unwrap_or_default();
         format!(
-            "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\n{}",
+            "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\n{chart}",
             scenario.title,
             table(&all),
             stops(&all),
-            chart_line(&file)
         )
-    })
+    })?;
+    saved.map(|_| ())
 }
 
 /// What stopped the runs without a value.

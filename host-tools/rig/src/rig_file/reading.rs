@@ -2,11 +2,11 @@
 
 use super::consistency::Warning;
 use super::derived::{Basis, GivenGains};
-use super::{RigFile, buckling, consistency, derived, support, tendon};
+use super::{RigFile, buckling, consistency, derived, support, tendon, whole_leg};
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::calibration::{CALIBRATION, Calibration};
 use crate::gains::{self, CONTROL};
-use crate::mechanism_keys;
+use crate::mechanism_keys::{self, key_of};
 use crate::plant_settings::{PlantSettings, SIMULATION};
 use crate::renamed_keys;
 use crate::toml_error::TomlError;
@@ -42,6 +42,7 @@ pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
     }
     buckling::check(&file, root.place(&["tendon", "pretension_n"]))?;
     let warnings = consistency::check(&file, &root)?;
+    whole_leg::check(&file, &root)?;
     notes.extend(warnings.iter().map(|Warning { span, text: words }| {
         let before = text.get(..span.start).unwrap_or_default();
         format!(
@@ -125,24 +126,4 @@ fn check(file: &RigFile) -> Result<(), (Quantity, Reason)> {
         }
         _ => Ok(()),
     }
-}
-
-/// Where the file gives a quantity: section and key. It does not give those of a single pose; tendons and support are
-/// checked where they are read.
-fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
-    Some(match quantity {
-        Quantity::BaseAnchors => ("geometry", "base_anchors_mm"),
-        Quantity::LegAnchors => ("geometry", "leg_anchors_mm"),
-        Quantity::UpperLength => ("geometry", "upper_mm"),
-        Quantity::JointLength => ("geometry", "joint_mm"),
-        Quantity::LegLength => ("geometry", "leg_mm"),
-        Quantity::LegMass => ("mass", "leg_kg"),
-        Quantity::LegCentroid => ("mass", "centroid_mm"),
-        Quantity::Gravity => ("mass", "gravity_m_per_s2"),
-        Quantity::TensionMin => ("tendon", "f_min_n"),
-        Quantity::TensionMax => ("tendon", "f_max_n"),
-        Quantity::Pretension => ("tendon", "pretension_n"),
-        Quantity::Tilt => ("workspace", "tilt_deg"),
-        _ => return None,
-    })
 }

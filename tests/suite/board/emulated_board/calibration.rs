@@ -2,6 +2,7 @@
 
 use super::board::{BoardUnderTest, errors};
 use serde_json::Value;
+use std::io::Write as _;
 use std::process::Stdio;
 
 #[test]
@@ -80,21 +81,25 @@ fn a_driven_leg_is_not_calibrated() {
     assert!(told.contains("run `leg disarm` first"), "{told}");
 }
 
-/// `leg tune` says what it will do, and does nothing before Enter is pressed.
+/// `leg tune` says what it will do, and does nothing before Enter is pressed, or where it is declined.
 #[test]
 fn a_tuning_that_nobody_confirms_moves_nothing() {
     let board = BoardUnderTest::new(&["--slack"]);
-    let mut command = board.command(&["tune", "1"]);
-    let output = command.stdin(Stdio::null()).output().unwrap();
-    let told = errors(&output);
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(
-        told.contains("your hand at the emergency stop, then press Enter")
-            && told.contains("standard input has ended"),
-        "{told}"
-    );
-    let plan = String::from_utf8(output.stdout).unwrap();
-    assert!(plan.contains("jog") && plan.contains("swing"), "{plan}");
+    for (answer, end) in [("", "standard input has ended"), ("n\n", "declined")] {
+        let mut command = board.command(&["tune", "1"]);
+        let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut running = piped.stderr(Stdio::piped()).spawn().unwrap();
+        let mut input = running.stdin.take().unwrap();
+        input.write_all(answer.as_bytes()).unwrap();
+        drop(input);
+        let output = running.wait_with_output().unwrap();
+        let told = errors(&output);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        let question = "your hand at the emergency stop, then press Enter";
+        assert!(told.contains(question) && told.contains(end), "{told}");
+        let plan = String::from_utf8(output.stdout).unwrap();
+        assert!(plan.contains("jog") && plan.contains("swing"), "{plan}");
+    }
     let state = board.state();
     assert_eq!(state["state"], "disarmed");
     for motor in 0..3 {

@@ -172,3 +172,35 @@ fn a_push_is_taken_up_as_the_mode_allows() {
         "{edge} {slow}"
     );
 }
+
+/// A payload that is found where a leg was pushed to, off its target, changes what a target there holds by no more than its filters: one
+/// whose tensions jump moves the leg.
+#[test]
+fn a_payload_that_is_found_does_not_move_the_load_at_the_target() {
+    let settings = Settings::table_1().unwrap();
+    let mechanism = Mechanism::<f64>::new(&settings).unwrap();
+    let direction = Direction::from_xy(-0.27, -0.2).unwrap();
+    let target = Direction::from_xy(-0.3, -0.24).unwrap();
+    let kinematics = inverse_kinematics(mechanism.rig.geometry(), &direction).unwrap();
+    let mut estimator = Estimator::new(&settings);
+    estimator.direction = direction;
+    let mut held = |tensions_n: [f64; 3], load| {
+        let unstretched_m = [0, 1, 2].map(|i| {
+            kinematics.lengths[i] - mechanism.tendons[i].elongation(tensions_n[i]).unwrap()
+        });
+        estimator
+            .update(&mechanism, &unstretched_m, &tensions_n, 0.0, load)
+            .unwrap();
+        estimator.step_load(&mechanism, &target, &Turn::none());
+        let load = estimator.load.estimate();
+        let moment = load.moment(&target, mechanism.payload_lever);
+        (load.payload_kg, moment)
+    };
+    let (pushed_kg, pushed_nm) = held([90.0, 80.0, 20.0], LoadEstimation::Immediate);
+    let (found_kg, found_nm) = held([52.0, 56.0, 62.0], LoadEstimation::Filtered);
+    assert!((found_kg - pushed_kg).abs() > 1.0, "{pushed_kg} {found_kg}");
+    for (pushed_nm, found_nm) in pushed_nm.into_iter().zip(found_nm) {
+        let moved_nm = (found_nm - pushed_nm).abs();
+        assert!(moved_nm < 1e-3, "{pushed_nm} {found_nm}");
+    }
+}

@@ -188,6 +188,21 @@ fn a_second_save_has_to_wait_for_the_first() {
     assert_eq!(line.heard(), [(number, HostReply::Done)]);
 }
 
+/// A leg that is armed in the next tick would be driven while the flash is written.
+#[test]
+fn settings_are_not_kept_while_a_command_waits_that_begins_something() {
+    let mut line = Line::identified();
+    let number = line.command(1, Command::Home);
+    assert_eq!(
+        line.ask(&HostRequest::SaveSettings),
+        refused(HostRefusal::Busy)
+    );
+    line.tick();
+    assert!(line.heard().iter().any(|(heard, _)| *heard == number));
+    line.send(&HostRequest::SaveSettings);
+    assert!(line.link.unsaved_settings().is_some());
+}
+
 /// Else it would be told that settings are kept which are no longer those in use.
 #[test]
 fn settings_do_not_change_while_they_are_being_kept() {

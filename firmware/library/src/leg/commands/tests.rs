@@ -129,9 +129,10 @@ fn a_leg_that_is_held_by_a_doubted_excess_has_to_home() {
 }
 
 /// A leg that hangs straight down is paid out no farther than to slack by a pose that its sensors agree on: not before every tendon has pulled for a
-/// while, nor with a fault, which may be one of what the pose is estimated by.
+/// while, nor with a fault, which may be one of what the pose is estimated by. With a fault nothing is known of slack, either.
 #[test]
 fn a_ramp_down_relies_on_a_pose_that_is_watched_and_no_fault_doubts() {
+    const SLACK_M: [f64; 3] = [-0.01, -0.02, -0.03];
     let error = LengthError {
         mean_m: 0.0,
         elongations_m: [1e-3; 3],
@@ -144,6 +145,7 @@ fn a_ramp_down_relies_on_a_pose_that_is_watched_and_no_fault_doubts() {
     ] {
         let mut leg = armed();
         leg.shared.zero_m = Some([0.2; 3]);
+        leg.shared.slack_m = SLACK_M;
         leg.mode = Mode::Held(Held::resting());
         let cycles = if watched { SETTLE_CYCLES } else { 0 };
         for _ in 0..=cycles {
@@ -157,6 +159,8 @@ fn a_ramp_down_relies_on_a_pose_that_is_watched_and_no_fault_doubts() {
             unreachable!("{:?}", leg.mode.state());
         };
         assert_eq!(ramping_down.trusts_pose(), trusted, "{watched} {fault:?}");
+        let known = leg.shared.slack_m == SLACK_M;
+        assert_eq!(known, fault.is_none(), "{watched} {fault:?}");
     }
 }
 
@@ -174,7 +178,7 @@ fn a_brake_gives_way_to_no_load_cell_in_doubt() {
             steps_m: [1e-6; 3],
             ticks_to_end: None,
         };
-        leg.mode = Mode::Held(Held::braking(&leg.shared, momentum, true));
+        leg.mode = Mode::Held(Held::braking(&leg.shared, momentum, false));
         leg.shared.f_max_n = 150.0;
         let faults = fault.map_or(FaultSet::NONE, FaultSet::single);
         leg.supervisor.react(State::Held, faults);

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{BRAKE_S, GENTLE_BRAKE_S, Held, Momentum, REST_BRAKE_S, SHORT_BRAKE_S};
+use super::{BRAKE_S, GENTLE_BRAKE_S, Held, Momentum, REST_BRAKE_S, SHORT_BRAKE_S, is_obeyed};
 use crate::control::{AxisInput, Target, TargetDemand, Turn, ticks};
 use crate::leg::shared::{Checked, Shared};
 use crate::settings::Settings;
@@ -24,7 +24,7 @@ fn a_brake_ends_where_the_way_would_have() {
             steps_m: [1e-6, 0.0, -1e-6],
             ticks_to_end,
         };
-        let held = Held::braking(&shared, momentum, true);
+        let held = Held::braking(&shared, momentum, false);
         assert_eq!(held.ticks_left, expected, "{ticks_to_end:?}");
     }
     let page = include_str!("../../../../SAFETY.md");
@@ -78,7 +78,7 @@ fn a_leg_near_its_maximum_tension_is_braked_more_gently() {
             steps_m: [1e-6, 0.0, -1e-6],
             ticks_to_end: None,
         };
-        let held = Held::braking(&shared, momentum, true);
+        let held = Held::braking(&shared, momentum, false);
         assert_eq!(held.ticks_left, expected, "{part}");
     }
 }
@@ -100,7 +100,7 @@ fn a_motor_is_braked_evenly() {
         steps_m: [step_m, 0.0, 0.0],
         ticks_to_end: None,
     };
-    let mut held = Held::braking(&shared, momentum, true);
+    let mut held = Held::braking(&shared, momentum, false);
     let brake = f64::from(held.ticks_left);
     let start_m = led_m;
     let mut steps = 0.0;
@@ -123,4 +123,32 @@ fn a_motor_is_braked_evenly() {
     }
     let way_m = led_m - start_m;
     assert!((way_m - 0.5 * step_m * brake).abs() < step_m, "{way_m}");
+}
+
+/// A leg is obeyed unless a motor that is led fast has lost a tenth of its speed.
+#[test]
+fn a_leg_is_obeyed_unless_a_fast_motor_falls_short() {
+    let settings = Settings::table_1().unwrap();
+    let step_m = 1e-6;
+    for (led, parts, expected) in [
+        ([1.0, -0.5, 0.1], [1.0, 1.0, 1.0], true),
+        ([1.0, -0.5, 0.1], [0.92, 0.92, 1.0], true),
+        ([1.0, -0.5, 0.1], [0.88, 1.0, 1.0], false),
+        ([1.0, -0.5, 0.1], [1.0, 0.88, 1.0], false),
+        // One that is hardly led hinders nothing, even where it stands.
+        ([1.0, -0.5, 0.14], [1.0, 1.0, 0.0], true),
+        ([1.0, -0.5, 0.16], [1.0, 1.0, 0.0], false),
+        // One that goes the other way does not obey.
+        ([1.0, -0.5, 0.1], [1.0, -1.0, 1.0], false),
+        ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], true),
+    ] {
+        let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+        for ((axis, led), part) in shared.axes.iter_mut().zip(led).zip(parts) {
+            for tick in 0..1000 {
+                axis.track(led * part * step_m * f64::from(tick));
+            }
+            axis.lead_by(led * step_m);
+        }
+        assert_eq!(is_obeyed(&shared), expected, "{led:?} {parts:?}");
+    }
 }

@@ -64,7 +64,7 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part);
     for words in [
         format!(
-            "no more than {} above what its speed, its payload and the stretch of its tendons give one whose motors stop at once, and never more than {} above the maximum",
+            "no more than {} above what its speed, its payload and the stretch of its tendons give one whose motors stop at once, or when the fault is named where the motors go on until then, and never more than {} above the maximum",
             percent(MORE),
             percent(CUT_OFF_BEYOND)
         ),

@@ -27,6 +27,23 @@ fn a_second_host_may_read_and_stop_and_nothing_else() {
     );
 }
 
+/// The stop that ends the work of the one that drives the leg would end its way down, too.
+#[test]
+fn a_leg_that_another_host_disarms_comes_down() {
+    let leg = hanging_leg();
+    let (mut first, mut second) = (host(&leg, 1), host(&leg, 2));
+    begin_move(&mut first);
+    let driven = first.drive(|operator| {
+        second.command(Command::Disarm).unwrap();
+        operator.command(Command::Move { x: 0.1, y: 0.0 })
+    });
+    let down = HostRefusal::Command(CommandRefusal::State(State::RampingDown));
+    error_of!(driven, OperatorError::Refused(_, refusal) if *refusal == down);
+    assert_ne!(state(&mut second), State::Held);
+    second.disarm().unwrap();
+    assert_eq!(state(&mut second), State::Disarmed);
+}
+
 #[test]
 fn to_hold_a_leg_that_moves_ends_its_move() {
     let leg = hanging_leg();

@@ -1,0 +1,191 @@
+//! What a leg asks of the whole of a file: what passes here is taken by the firmware and can be simulated.
+
+use super::RigFile;
+use crate::mechanism_keys::key_of;
+use crate::number::{decimal, plain};
+use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
+use crate::toml_error::TomlError;
+use crate::toml_section::Section;
+use leg_firmware::settings::TendonParameters;
+use leg_model::{Error, Rig};
+use std::ops::Range;
+
+/// Refuses a file that no leg can run with.
+pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
+    check_inertia(file, root)?;
+    check_bands(file, root)?;
+    check_rounded(file).map_err(|error| refused(error, root))
+}
+
+/// The firmware has its mechanism in f32, in which a small number may be none and two that are near may be one.
+fn check_rounded(file: &RigFile) -> Result<(), Error> {
+    let round = |value: f64| value as f32;
+    Rig::new(&file.parameters.map(round))?;
+    let rounded = |tendon| TendonParameters::from_tendon(tendon, round);
+    TendonParameters::validated_all::<f32>(&file.tendons.each_ref().map(rounded))?;
+    Ok(())
+}
+
+/// A leg without inertia, in the firmware's f32, has no motion.
+fn check_inertia(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
+    let inertia = file.plant.transverse_inertia_kg_m2(&file.parameters);
+    if inertia as f32 > 0.0 {
+        return Ok(());
+    }
+    let key = if file.parameters.leg_mass_kg > 0.0 {
+        "centroid_mm"
+    } else {
+        "leg_kg"
+    };
+    Err(TomlError::new(
+        root.place(&["mass", key]).unwrap_or(0..0),
+        format!(
+            "`{key}` is too small: the leg's inertia about its joint, 4/3 of `leg_kg` by the square of `centroid_mm`, is no \
+             more than {} kg·m²",
+            plain(inertia)
+        ),
+        format!(
+            "give a greater one, or the inertia as `{}` in `[{SIMULATION}]`",
+            TRANSVERSE_INERTIA.name
+        ),
+    ))
+}
+
+/// Targets keep off the highest tension by the band in which a motor is slowed down.
+fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
+    // As the firmware judges it, in f32.
+    let (f_min_n, f_max_n) = (file.f_min_n as f32, file.f_max_n as f32);
+    for servo in &file.gains.servos {
+        let band_n = decimal(servo.f_max_band_n);
+        if f_max_n - servo.f_max_band_n < f_min_n {
+            return Err(TomlError::new(
+                band_place(root).unwrap_or(0..0),
+                format!(
+                    "`control.servo.f_max_band_n` ({}) leaves no tension between `tendon.f_min_n` ({}) and `tendon.f_max_n` ({})",
+                    plain(band_n),
+                    plain(file.f_min_n),
+                    plain(file.f_max_n)
+                ),
+                format!(
+                    "give a band below {}, or a higher `f_max_n`",
+                    plain(decimal(f_max_n - f_min_n))
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Where the band stands, or else the tension that it is below.
+fn band_place(root: &Section<'_>) -> Option<Range<usize>> {
+    let band = root.place(&["control", "servo", "f_max_band_n"]);
+    band.or_else(|| root.place(&["tendon", "f_max_n"]))
+}
+
+/// What is refused in f32, at its place.
+fn refused(error: Error, root: &Section<'_>) -> TomlError {
+    if let Error::Refused { quantity, reason } = error
+        && let Some((section, key)) = key_of(quantity)
+    {
+        let span = root.place(&[section, key]).unwrap_or(0..0);
+        return TomlError::refused(span, key, reason);
+    }
+    TomlError::new(
+        root.place(&["tendon"]).unwrap_or(0..0),
+        format!("the tendons with the digits of the firmware's f32: {error}"),
+        "give fewer points, or some that are farther from each other",
+    )
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use crate::ready_rigs::READY_RIGS;
+    use crate::rig_file::RigFile;
+
+    /// The paper's rig with other lines, and with more at its end.
+    fn changed(lines: &[(&str, &str)], more: &str) -> String {
+        let mut text = READY_RIGS[0].text.to_owned();
+        for (line, other) in lines {
+            assert!(text.contains(line), "{line}");
+            text = text.replace(line, other);
+        }
+        text + more
+    }
+
+    #[track_caller]
+    fn assert_refused(text: &str, at: &str, sentence: &str, help: &str) {
+        let failure = RigFile::parse("a.toml", text).unwrap_err();
+        let message = failure.render(false);
+        for part in [at, sentence, help] {
+            assert!(message.contains(part), "{part}: {message}");
+        }
+    }
+
+    #[test]
+    fn a_leg_without_inertia_is_refused_unless_the_file_gives_it() {
+        let help = "`leg_transverse_inertia_kg_m2` in `[simulation]`";
+        for (line, other, key) in [
+            ("leg_kg = 1.5", "leg_kg = 0", "leg_kg"),
+            ("leg_kg = 1.5", "leg_kg = 1e-300", "centroid_mm"),
+            ("centroid_mm = 91", "centroid_mm = 0", "centroid_mm"),
+        ] {
+            let text = changed(&[(line, other)], "");
+            let sentence = format!("`{key}` is too small: the leg's inertia");
+            assert_refused(&text, &format!("{key} = "), &sentence, help);
+            let given = "\n[simulation]\nleg_transverse_inertia_kg_m2 = 0.02\n";
+            RigFile::parse("a.toml", &(text + given)).unwrap();
+        }
+        // 5 g with their centroid at 30 mm are a leg.
+        let light = [
+            ("leg_kg = 1.5", "leg_kg = 0.005"),
+            ("centroid_mm = 91", "centroid_mm = 30"),
+        ];
+        RigFile::parse("a.toml", &changed(&light, "")).unwrap();
+    }
+
+    #[test]
+    fn a_band_that_leaves_no_tension_is_refused() {
+        let sentence = "`control.servo.f_max_band_n` (143) leaves no tension";
+        let more = "\n[control.servo]\nf_max_band_n = 143\n";
+        let help = "give a band below 142";
+        assert_refused(&changed(&[], more), "f_max_band_n = 143", sentence, help);
+        // By its default, too.
+        let narrow = changed(
+            &[
+                ("f_max_n = 150", "f_max_n = 72"),
+                ("f_min_n = 8", "f_min_n = 69"),
+            ],
+            "",
+        );
+        assert_refused(
+            &narrow,
+            "f_max_n = 72",
+            "(4) leaves no tension",
+            "a band below 3",
+        );
+    }
+
+    /// In f64 these leave 3.9999999999999996 N.
+    #[test]
+    fn a_band_is_judged_as_by_the_firmware() {
+        let exact = [
+            ("f_max_n = 150", "f_max_n = 9.7"),
+            ("f_min_n = 8", "f_min_n = 5.7"),
+            ("pretension_n = 70", "pretension_n = 5.7"),
+        ];
+        let text = changed(&exact, "");
+        let failure = RigFile::parse("a.toml", &text).err();
+        let message = failure
+            .map(|failure| failure.render(false))
+            .unwrap_or_default();
+        assert!(!message.contains("leaves no tension"), "{message}");
+    }
+
+    #[test]
+    fn what_is_nothing_in_the_firmware_s_f32_is_refused() {
+        let text = changed(&[("joint_mm = 29", "joint_mm = 1e-300")], "");
+        let sentence = "`joint_mm` must be greater than zero";
+        assert_refused(&text, "joint_mm = 1e-300", sentence, "correct the value");
+    }
+}
