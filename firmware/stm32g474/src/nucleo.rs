@@ -63,11 +63,11 @@ impl LowerHalf for Nucleo {
 
     #[inline(always)]
     fn drive(&mut self, drive: &Drive<f32>) {
-        self.stage.drive(drive);
-        // In each tick, not only in the first: a debugger that attaches may have the watchdog rest in a halt. OpenOCD does.
+        // Before the outputs come on, and in each tick: a debugger that attaches may have the watchdog rest in a halt. OpenOCD does.
         if drive.enabled {
             tick_watchdog::set_rest_in_halt(false);
         }
+        self.stage.drive(drive);
     }
 
     fn cut(&mut self) {

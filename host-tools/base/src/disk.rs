@@ -9,7 +9,7 @@ pub fn help_for(error: &io::Error, otherwise: &'static str) -> &'static str {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "make room on the disk, or write to another one"
         }
-        io::ErrorKind::ResourceBusy => "name another file, or end that program first",
+        io::ErrorKind::ResourceBusy => "name another file, or end the program that uses this one",
         io::ErrorKind::FileTooLarge => "raise the limit of a file's size, see `ulimit -f`",
         _ => otherwise,
     }

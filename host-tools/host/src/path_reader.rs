@@ -106,8 +106,10 @@ impl<R: BufRead> PathReader<R> {
     /// The next line that is not empty.
     fn next_record(&mut self) -> Result<Option<StringRecord>, Failure> {
         loop {
-            let line =
-                next_line(&mut self.input).map_err(|error| self.refused(&error.to_string()))?;
+            let line = next_line(&mut self.input).map_err(|error| {
+                let sentence = format!("cannot read {}: {error}", self.name);
+                Failure::refused(sentence, "give a file that may be read")
+            })?;
             self.line += 1;
             let line = match line {
                 None => return Ok(None),
@@ -123,7 +125,7 @@ impl<R: BufRead> PathReader<R> {
                 Some(record) => {
                     return record
                         .map(Some)
-                        .map_err(|error| self.refused(&error.to_string()));
+                        .map_err(|error| self.refused(&text_error(&error)));
                 }
             }
         }
@@ -202,6 +204,14 @@ impl<R: BufRead> PathReader<R> {
 
     fn refused(&self, what: &str) -> Failure {
         Failure::refused(format!("{}, line {}: {what}", self.name, self.line), HELP)
+    }
+}
+
+/// What is wrong with a line as a text, with the column.
+fn text_error(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::Utf8 { err, .. } => format!("column {} is no UTF-8", err.field() + 1),
+        _ => error.to_string(),
     }
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn print_notes(notes: &[String]) {
 pub(crate) fn note_unfinished(file: &Path) {
     if let Some(part) = recording::unfinished(file) {
         note(&format!(
-            "leg: {} is a recording that did not come to its end; it is left as it is",
+            "leg: {} is a recording that has not come to its end; it is left as it is",
             part.display()
         ));
     }

@@ -126,6 +126,9 @@ impl Answers {
         let both = self.waiting.len().min(other.waiting.len());
         let pairs = self.waiting.drain(..both).zip(other.waiting.drain(..both));
         let otherwise = pairs.filter(|(one, other)| one != other).count();
+        if both > 0 {
+            (self.ticks, other.ticks) = (0, 0);
+        }
         (otherwise + self.take_unanswered() + other.take_unanswered()) as u64
     }
 
@@ -219,6 +222,13 @@ mod tests {
             assert_eq!(count([Some((1, true)), None], ANSWERED_TICKS), 0);
             assert_eq!(count([None, Some((1, true))], ANSWERED_TICKS + 1), 0);
             assert_eq!(count([Some((2, true)), Some((2, false))], 1), 1);
+            // One of the two may be late all the time.
+            for number in 10..14 {
+                let late = (number > 10).then_some((number - 1, true));
+                let answers = [Some((number, true)), late];
+                assert_eq!(count(answers, ANSWERED_TICKS), 0);
+            }
+            assert_eq!(count([None, Some((13, true))], 1), 0);
             assert_eq!(count([Some((3, true)), None], ANSWERED_TICKS), 0);
             assert_eq!(count([None, None], 1), 1);
             assert_eq!(count([None, None], ANSWERED_TICKS + 1), 0);

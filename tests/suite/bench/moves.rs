@@ -8,6 +8,7 @@ use leg_bench::moves::{MoveCampaign, Moved};
 use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
 use leg_rig::rig_file::RigFile;
 use std::ops::Range;
+use std::sync::LazyLock;
 
 fn rig(name: &str) -> (String, RigFile) {
     (name.into(), RigFile::load(Some(name.as_ref())).unwrap())
@@ -61,15 +62,22 @@ fn the_tip_stays_on_its_trajectory() {
     require_passed(&made(&campaign, 0..60));
 }
 
-/// Eight moves of each.
+/// Eight moves of each rig, made once for all that is asserted of them.
+fn moves_of_every_rig() -> &'static [Moved] {
+    static MOVED: LazyLock<Vec<Moved>> = LazyLock::new(|| {
+        let campaign = MoveCampaign {
+            seed: 9,
+            rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
+            payload_kg: None,
+        };
+        made(&campaign, 0..8 * READY_RIGS.len() as u64)
+    });
+    &MOVED
+}
+
 #[test]
 fn the_tip_of_every_rig_stays_on_its_trajectory() {
-    let campaign = MoveCampaign {
-        seed: 9,
-        rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
-        payload_kg: None,
-    };
-    require_passed(&made(&campaign, 0..8 * READY_RIGS.len() as u64));
+    require_passed(moves_of_every_rig());
 }
 
 /// A payload that was hung on a leg may take the last newtons below the maximum tension, to which no target leads: such a leg never set out, wherever it
@@ -101,14 +109,9 @@ fn a_leg_that_takes_the_last_newtons_to_be_held_moves() {
 /// Between poses whose tensions are within their limits for the payload, whatever it is: on the way they swing beyond them by little.
 #[test]
 fn a_move_keeps_the_tensions_between_minimum_and_maximum() {
-    let campaign = MoveCampaign {
-        seed: 9,
-        rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
-        payload_kg: None,
-    };
     let [f_min_n, f_max_n] = [rig("table1").1.f_min_n, rig("table1").1.f_max_n];
     let (mut below_n, mut above_n) = (0.0_f64, 0.0_f64);
-    for moved in made(&campaign, 0..56) {
+    for moved in moves_of_every_rig() {
         assert_eq!(moved.error, None);
         let [least_n, greatest_n] = moved.tensions_n;
         below_n = below_n.max(f_min_n - least_n);

@@ -212,6 +212,6 @@ fn a_recording_of_a_command_that_is_killed_is_replayed_as_far_as_it_goes() {
         &["log", "--on", "sim", "--for", "0.1", "--out", "leg.mcap"],
     );
     assert!(output.status.success());
-    assert!(errors(&output).contains("leg.part.mcap is a recording that did not come to its end"));
+    assert!(errors(&output).contains("leg.part.mcap is a recording that has not come to its end"));
     assert!(part.exists());
 }

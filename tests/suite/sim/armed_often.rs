@@ -6,7 +6,6 @@ use super::station_stand::{paper, pass};
 use leg_bench::stand::Stand;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{FaultSet, State};
-
 use leg_sim::plant::{Defect, Start};
 
 /// How often, and for how long each time, s: half of what it takes until the tendons pull.

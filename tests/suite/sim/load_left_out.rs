@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, pass};
+use crate::common::require_said;
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, State};
@@ -49,6 +50,45 @@ fn a_leg_that_leaves_its_load_out_stays_where_it_is_when_it_goes_on() {
         assert!(tip_mm < 0.15, "{name}: {tip_mm} mm");
         assert!(highest_n < before_n + 3.0, "{name}: {highest_n} N");
     }
+}
+
+/// The same, but a payload that was hung on it took a tendon's tension. Cleared, it sags where that hardly pulls: there is no pose of a leg without its
+/// load that has such lengths.
+#[test]
+fn a_held_leg_with_a_slack_tendon_that_leaves_its_load_out_sags() {
+    const SAGS_MM: f64 = 15.0;
+    require_said(
+        "firmware/SAFETY.md",
+        &[format!(
+            "With its load left out it may sag by up to {SAGS_MM} mm"
+        )],
+    );
+    let mut farthest_mm = 0.0_f64;
+    for ([pretension_n, tilt_deg], sags) in [([20.0, 15.0], true), ([40.0, 28.0], false)] {
+        for payload_kg in [1.7, 2.0] {
+            let mut stand = armed(&rig("table1"), [40.0, tilt_deg], 1.0, 82);
+            for command in [
+                Command::Pretension(pretension_n as f32),
+                Command::Compensation(Compensation::Off),
+                Command::Stop,
+            ] {
+                stand.command(&command).unwrap();
+                pass(&mut stand, 2.0);
+            }
+            stand.plant().set_payload(payload_kg, 1.0);
+            pass(&mut stand, 3.0);
+            assert_eq!(stand.state(), State::Held);
+            stand.command(&Command::Clear).unwrap();
+            let [tip_mm, highest_n] = excursion(&mut stand, 4.0);
+            println!(
+                "{pretension_n} N, {tilt_deg}°, {payload_kg} kg: {tip_mm:.2} mm, {highest_n:.0} N"
+            );
+            assert!(highest_n < 150.0, "{highest_n} N");
+            assert!(sags || tip_mm < 0.3, "{tip_mm} mm");
+            farthest_mm = farthest_mm.max(tip_mm);
+        }
+    }
+    assert!(farthest_mm < SAGS_MM, "{farthest_mm} mm");
 }
 
 /// Its load keeps a tendon below the minimum tension: while the leg waited for that, it was held by "slack tendon" 5 s after it went on.

@@ -24,7 +24,8 @@ pub struct CommandQueue {
     waiting: Deque<(u16, Command), COMMANDS_MAX>,
     /// How many of those that wait are superseded: the oldest.
     superseded: usize,
-    outcomes: Deque<CommandOutcome, COMMANDS_MAX>,
+    /// One more: a stop refuses all that waits, and is answered, too.
+    outcomes: Deque<CommandOutcome, { COMMANDS_MAX + 1 }>,
 }
 
 impl CommandQueue {

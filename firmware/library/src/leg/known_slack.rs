@@ -13,18 +13,13 @@ impl<T: Scalar> Shared<T> {
         self.mechanism.f_min_n * T::HALF
     }
 
-    /// Forgets where the tendons are slack of a leg that comes to a state: that of one that pulls, as the leg is armed; all of them as it homes or
-    /// is jogged, or with a fault, after which it may be off while they pull.
+    /// Forgets where the tendons are slack of a leg that comes to a state: that of one that pulls, as the leg is armed or cleared; all of them as it
+    /// homes or is jogged, or with a fault, by which a leg may be off while its tendons pull.
     pub fn forget_slack(&mut self, state: State, unfaulted: bool, measured: &Measured<T>) {
-        let least_n = match state {
-            State::Active if unfaulted => self.taut_n(),
-            State::Homing | State::Jogging => -T::MAX,
-            _ if unfaulted => return,
-            _ => -T::MAX,
-        };
-        let tensions_n = &measured.steady_tensions_n;
-        for (slack, &tension_n) in self.slack_m.iter_mut().zip(tensions_n) {
-            if tension_n > least_n {
+        let all = !unfaulted || matches!(state, State::Homing | State::Jogging);
+        let taut_n = self.taut_n();
+        for (slack, &tension_n) in self.slack_m.iter_mut().zip(&measured.steady_tensions_n) {
+            if all || state == State::Active && tension_n > taut_n {
                 *slack = -T::MAX;
             }
         }
@@ -35,6 +30,8 @@ impl<T: Scalar> Shared<T> {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use crate::control::Measured;
+    use crate::leg::held::Momentum;
+    use crate::leg::mode::{Mode, Trust};
     use crate::leg::shared::{Checked, Shared};
     use crate::settings::Settings;
     use crate::supervisor::State;
@@ -63,5 +60,29 @@ mod tests {
                 assert_eq!(shared.slack_m, expected_m, "{state:?} {unfaulted}");
             }
         }
+    }
+
+    /// A fault may end on its own while the leg is held, which brakes as it comes.
+    #[test]
+    fn a_leg_that_brakes_with_a_fault_forgets_its_slack() {
+        let settings = Settings::table_1().unwrap();
+        let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+        shared.slack_m = [0.02; 3];
+        let measured = Measured::resting([0.01; 3], [70.0; 3]);
+        let momentum = Momentum {
+            steps_m: [1e-6; 3],
+            ticks_to_end: None,
+        };
+        let trust = Trust {
+            pose: true,
+            counters: true,
+            free: true,
+            currents: true,
+            cells: true,
+            unfaulted: false,
+        };
+        let mode = Mode::begin(State::Held, &mut shared, &measured, momentum, trust);
+        assert!(matches!(mode, Mode::Held(held) if held.brakes()));
+        assert_eq!(shared.slack_m, [-f64::MAX; 3]);
     }
 }

@@ -160,6 +160,7 @@ impl<T: Scalar> Mode<T> {
         momentum: Momentum<T>,
         trust: Trust,
     ) -> Self {
+        shared.forget_slack(state, trust.unfaulted, measured);
         if state == State::Held && trust.counters {
             // Where a current is in doubt a motor may not obey, or a sensor is wrong.
             let obeyed = trust.currents || is_obeyed(shared);
@@ -174,7 +175,6 @@ impl<T: Scalar> Mode<T> {
             }
         }
         shared.come_to_rest(state, measured);
-        shared.forget_slack(state, trust.unfaulted, measured);
         match state {
             State::Boot => Self::boot(),
             State::Disarmed => Self::Disarmed,

@@ -1,6 +1,6 @@
 //! Streaming a path to the leg as set-points.
 
-use super::motion::{not_following, unlimited};
+use super::motion::{is_overtaken, not_following, unlimited};
 use super::{Operator, OperatorError};
 use crate::path_reader::{PathSource, PathStep};
 use leg_base::failure::Failure;
@@ -192,6 +192,8 @@ impl Operator {
                         _ => return Err(OperatorError::Point(point.time_s, refusal)),
                     }
                 }
+                // What limits the leg on its way down is no matter.
+                error if is_overtaken(&error) => return Err(error),
                 OperatorError::Refused(..) | OperatorError::Faulted(..) => {
                     // Why it no longer follows says more.
                     self.require_stream()?;

@@ -30,8 +30,10 @@ impl Operator {
         self.keeps_alive = true;
         let result = work(self);
         self.keeps_alive = false;
-        let driven = self.drives && !result.as_ref().is_err_and(is_overtaken);
-        let halted = if driven { self.halt() } else { Ok(()) };
+        if result.as_ref().is_err_and(is_overtaken) {
+            self.drives = false;
+        }
+        let halted = if self.drives { self.halt() } else { Ok(()) };
         match (result, halted) {
             // Without a line there can be no stop, and its error says what the leg does then.
             (Err(error @ OperatorError::ConnectionLost(..)), _) => Err(error),
@@ -195,7 +197,7 @@ pub(super) fn unlimited(
 }
 
 /// Whether a command was refused because a stop or a disarm came first.
-fn is_overtaken(error: &OperatorError) -> bool {
+pub(super) fn is_overtaken(error: &OperatorError) -> bool {
     matches!(
         error,
         OperatorError::Refused(

@@ -1,6 +1,10 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use super::{PathReader, PathSource, PathStep};
 use leg_base::failure::Failure;
 use leg_firmware::set_point::StreamTension;
+use std::fs::File;
+use std::io::BufReader;
 
 fn rows(text: &'static str) -> Result<Vec<f64>, Failure> {
     let mut reader = PathReader::new(text.as_bytes(), "path.csv");
@@ -31,6 +35,23 @@ fn a_row_may_ask_for_a_pretension_or_a_stiffness() {
         let row = reader.next_row().map(|row| row.map(|row| row.tension));
         assert_eq!(row, Ok(Some(tension)));
     }
+}
+
+/// Of a cell that is no text, too, line and column are those of the file; what cannot be read at all has none.
+#[test]
+fn what_is_no_text_is_refused_at_its_place() {
+    let text: &[u8] = b"time_s,azimuth_deg,tilt_deg\n0,0,1\n1,\xff,1\n";
+    let mut reader = PathReader::new(text, "path.csv");
+    reader.next_row().unwrap();
+    let told = reader.next_row().unwrap_err().to_string();
+    assert!(
+        told.contains("path.csv, line 3: column 2 is no UTF-8"),
+        "{told}"
+    );
+    let directory = BufReader::new(File::open(env!("CARGO_MANIFEST_DIR")).unwrap());
+    let told = PathReader::new(directory, "here").next_row().unwrap_err();
+    let told = told.to_string();
+    assert!(told.contains("cannot read here: "), "{told}");
 }
 
 #[test]

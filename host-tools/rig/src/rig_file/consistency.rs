@@ -170,7 +170,7 @@ fn own_path(path: &str, motor: usize, root: &Section<'_>) -> String {
 }
 
 /// The place of a key or a section in a motor's own section or, if it is not there, in that of all.
-fn place_of(path: &[&str], motor: usize, root: &Section<'_>) -> Option<Range<usize>> {
+pub(super) fn place_of(path: &[&str], motor: usize, root: &Section<'_>) -> Option<Range<usize>> {
     let number = MOTORS.get(motor).copied().unwrap_or_default();
     let own = match path.split_last() {
         Some((key, section)) if !section.is_empty() => [section, &[number, *key]].concat(),

@@ -41,8 +41,8 @@ pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
         return Err(TomlError::refused(span, key, reason));
     }
     buckling::check(&file, root.place(&["tendon", "pretension_n"]))?;
-    let warnings = consistency::check(&file, &root)?;
-    whole_leg::check(&file, &root)?;
+    let mut warnings = consistency::check(&file, &root)?;
+    warnings.extend(whole_leg::check(&file, &root)?);
     notes.extend(warnings.iter().map(|Warning { span, text: words }| {
         let before = text.get(..span.start).unwrap_or_default();
         format!(

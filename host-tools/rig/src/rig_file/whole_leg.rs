@@ -1,6 +1,9 @@
-//! What a leg asks of the whole of a file: what passes here is taken by the firmware and can be simulated.
+//! What a leg asks of a file as a whole, beyond what its mechanism does.
 
 use super::RigFile;
+use super::consistency::{Warning, place_of};
+use crate::actuator::ACTUATOR;
+use crate::gains::CONTROL;
 use crate::mechanism_keys::key_of;
 use crate::number::{decimal, plain};
 use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
@@ -8,10 +11,28 @@ use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::settings::TendonParameters;
 use leg_model::{Error, Rig};
-use std::ops::Range;
 
-/// Refuses a file that no leg can run with.
-pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
+/// Refuses a file of a leg with which none runs, and warns of one that may describe no more than a mechanism.
+pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Option<Warning>, TomlError> {
+    let Err(error) = check_leg(file, root) else {
+        return Ok(None);
+    };
+    if [ACTUATOR, CONTROL, SIMULATION]
+        .iter()
+        .any(|section| root.has(section))
+    {
+        return Err(error);
+    }
+    let TomlError {
+        span,
+        sentence,
+        help,
+    } = error;
+    let text = format!("no leg runs with it: {sentence}; {help}");
+    Ok(Some(Warning { span, text }))
+}
+
+fn check_leg(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     check_inertia(file, root)?;
     check_bands(file, root)?;
     check_rounded(file).map_err(|error| refused(error, root))
@@ -55,31 +76,27 @@ fn check_inertia(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
 fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     // As the firmware judges it, in f32.
     let (f_min_n, f_max_n) = (file.f_min_n as f32, file.f_max_n as f32);
-    for servo in &file.gains.servos {
-        let band_n = decimal(servo.f_max_band_n);
+    for (motor, servo) in file.gains.servos.iter().enumerate() {
         if f_max_n - servo.f_max_band_n < f_min_n {
+            let band = place_of(&["control", "servo", "f_max_band_n"], motor, root);
+            let place = band.or_else(|| root.place(&["tendon", "f_max_n"]));
+            let [band_n, most_n] = [servo.f_max_band_n, f_max_n - f_min_n].map(decimal);
             return Err(TomlError::new(
-                band_place(root).unwrap_or(0..0),
+                place.unwrap_or(0..0),
                 format!(
-                    "`control.servo.f_max_band_n` ({}) leaves no tension between `tendon.f_min_n` ({}) and `tendon.f_max_n` ({})",
+                    "`f_max_band_n` ({}) leaves no tension between `tendon.f_min_n` ({}) and `tendon.f_max_n` ({})",
                     plain(band_n),
                     plain(file.f_min_n),
                     plain(file.f_max_n)
                 ),
                 format!(
-                    "give a band below {}, or a higher `f_max_n`",
-                    plain(decimal(f_max_n - f_min_n))
+                    "give a band of {} at most, or a higher `f_max_n`",
+                    plain(most_n)
                 ),
             ));
         }
     }
     Ok(())
-}
-
-/// Where the band stands, or else the tension that it is below.
-fn band_place(root: &Section<'_>) -> Option<Range<usize>> {
-    let band = root.place(&["control", "servo", "f_max_band_n"]);
-    band.or_else(|| root.place(&["tendon", "f_max_n"]))
 }
 
 /// What is refused in f32, at its place.
@@ -101,7 +118,7 @@ fn refused(error: Error, root: &Section<'_>) -> TomlError {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use crate::ready_rigs::READY_RIGS;
-    use crate::rig_file::RigFile;
+    use crate::rig_file::{RigFile, RigText};
 
     /// The paper's rig with other lines, and with more at its end.
     fn changed(lines: &[(&str, &str)], more: &str) -> String {
@@ -122,8 +139,31 @@ mod tests {
         }
     }
 
+    fn notes(text: &str) -> Vec<String> {
+        let [name, text] = ["a.toml", text].map(str::to_owned);
+        let (_, notes) = RigText { name, text }.read().unwrap();
+        notes
+    }
+
+    /// One that may be no more than a mechanism is taken, with a warning.
+    #[track_caller]
+    fn assert_warned(text: &str, sentence: &str, help: &str) {
+        let [note] = &notes(text)[..] else {
+            panic!("{:?}", notes(text));
+        };
+        for part in [
+            "a.toml: warning: no leg runs with it: ",
+            sentence,
+            help,
+            " (line ",
+        ] {
+            assert!(note.contains(part), "{part}: {note}");
+        }
+    }
+
     #[test]
     fn a_leg_without_inertia_is_refused_unless_the_file_gives_it() {
+        const LEG: &str = "\n[simulation]\ncell_noise_n = 0.1\n";
         let help = "`leg_transverse_inertia_kg_m2` in `[simulation]`";
         for (line, other, key) in [
             ("leg_kg = 1.5", "leg_kg = 0", "leg_kg"),
@@ -132,7 +172,9 @@ mod tests {
         ] {
             let text = changed(&[(line, other)], "");
             let sentence = format!("`{key}` is too small: the leg's inertia");
-            assert_refused(&text, &format!("{key} = "), &sentence, help);
+            let leg = text.clone() + LEG;
+            assert_refused(&leg, &format!("{key} = "), &sentence, help);
+            assert_warned(&text, &sentence, help);
             let given = "\n[simulation]\nleg_transverse_inertia_kg_m2 = 0.02\n";
             RigFile::parse("a.toml", &(text + given)).unwrap();
         }
@@ -146,10 +188,14 @@ mod tests {
 
     #[test]
     fn a_band_that_leaves_no_tension_is_refused() {
-        let sentence = "`control.servo.f_max_band_n` (143) leaves no tension";
-        let more = "\n[control.servo]\nf_max_band_n = 143\n";
-        let help = "give a band below 142";
-        assert_refused(&changed(&[], more), "f_max_band_n = 143", sentence, help);
+        let sentence = "`f_max_band_n` (143) leaves no tension";
+        let help = "give a band of 142 at most";
+        for section in ["control.servo", "control.servo.2"] {
+            let more = |band_n| format!("\n[{section}]\nf_max_band_n = {band_n}\n");
+            let text = changed(&[], &more(143));
+            assert_refused(&text, "f_max_band_n = 143", sentence, help);
+            RigFile::parse("a.toml", &changed(&[], &more(142))).unwrap();
+        }
         // By its default, too.
         let narrow = changed(
             &[
@@ -158,12 +204,7 @@ mod tests {
             ],
             "",
         );
-        assert_refused(
-            &narrow,
-            "f_max_n = 72",
-            "(4) leaves no tension",
-            "a band below 3",
-        );
+        assert_warned(&narrow, "(4) leaves no tension", "a band of 3 at most");
     }
 
     /// In f64 these leave 3.9999999999999996 N.
@@ -175,17 +216,13 @@ mod tests {
             ("pretension_n = 70", "pretension_n = 5.7"),
         ];
         let text = changed(&exact, "");
-        let failure = RigFile::parse("a.toml", &text).err();
-        let message = failure
-            .map(|failure| failure.render(false))
-            .unwrap_or_default();
-        assert!(!message.contains("leaves no tension"), "{message}");
+        assert_eq!(notes(&text), [""; 0]);
     }
 
     #[test]
     fn what_is_nothing_in_the_firmware_s_f32_is_refused() {
         let text = changed(&[("joint_mm = 29", "joint_mm = 1e-300")], "");
         let sentence = "`joint_mm` must be greater than zero";
-        assert_refused(&text, "joint_mm = 1e-300", sentence, "correct the value");
+        assert_warned(&text, sentence, "correct the value");
     }
 }

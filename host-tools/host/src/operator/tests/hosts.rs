@@ -42,6 +42,13 @@ fn a_leg_that_another_host_disarms_comes_down() {
     assert_ne!(state(&mut second), State::Held);
     second.disarm().unwrap();
     assert_eq!(state(&mut second), State::Disarmed);
+    // What the first one did before gives it no part in what the second does now.
+    begin_move(&mut second);
+    error_of!(
+        first.reach(&lean(-10.0)),
+        OperatorError::Refused(_, HostRefusal::OtherHost)
+    );
+    assert_eq!(state(&mut second), State::Active);
 }
 
 #[test]
