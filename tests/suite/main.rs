@@ -148,6 +148,7 @@ mod host {
 mod bench {
     mod bode;
     mod check;
+    mod cut_off_strikes;
     mod cut_tendons;
     mod false_alarms;
     mod image_budget;
