@@ -84,11 +84,19 @@ fn a_held_leg_with_a_slack_tendon_that_leaves_its_load_out_sags() {
                 "{pretension_n} N, {tilt_deg}°, {payload_kg} kg: {tip_mm:.2} mm, {highest_n:.0} N"
             );
             assert!(highest_n < 150.0, "{highest_n} N");
-            assert!(sags || tip_mm < 0.3, "{tip_mm} mm");
+            if sags {
+                assert!(stand.state() == State::Held && stand.faults().has(Fault::Slack));
+            } else {
+                assert!(
+                    stand.state() == State::Active && tip_mm < 0.3,
+                    "{tip_mm} mm"
+                );
+            }
             farthest_mm = farthest_mm.max(tip_mm);
         }
     }
-    assert!(farthest_mm < SAGS_MM, "{farthest_mm} mm");
+    let range_mm = 0.5 * SAGS_MM..SAGS_MM;
+    assert!(range_mm.contains(&farthest_mm), "{farthest_mm} mm");
 }
 
 /// Its load keeps a tendon below the minimum tension: while the leg waited for that, it was held by "slack tendon" 5 s after it went on.

@@ -17,7 +17,7 @@ const MOVE_TIME: Duration = Duration::from_secs(60);
 
 impl Operator {
     /// Does `work` with keep-alives, and leaves the leg in hold however that ends. A leg that obeyed nothing
-    /// of it is left as it was, and so is one that another host has stopped or disarmed: a stop would end its way down.
+    /// of it is left as it was, and so is one that another host has disarmed or drives since: a stop would end what that one does.
     ///
     /// # Errors
     /// [`OperatorError::CommandTimeTooShort`] before any work. [`OperatorError::ConnectionLost`] by the work;
@@ -196,15 +196,16 @@ pub(super) fn unlimited(
     Ok(())
 }
 
-/// Whether a command was refused because a stop or a disarm came first.
+/// Whether a command was refused because a stop or a disarm came first, or another host drives since.
 pub(super) fn is_overtaken(error: &OperatorError) -> bool {
     matches!(
         error,
         OperatorError::Refused(
             _,
-            HostRefusal::Command(
-                CommandRefusal::Superseded | CommandRefusal::State(State::RampingDown)
-            )
+            HostRefusal::OtherHost
+                | HostRefusal::Command(
+                    CommandRefusal::Superseded | CommandRefusal::State(State::RampingDown)
+                )
         )
     )
 }

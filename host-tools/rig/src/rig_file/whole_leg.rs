@@ -80,19 +80,15 @@ fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
         if f_max_n - servo.f_max_band_n < f_min_n {
             let band = place_of(&["control", "servo", "f_max_band_n"], motor, root);
             let place = band.or_else(|| root.place(&["tendon", "f_max_n"]));
-            let [band_n, most_n] = [servo.f_max_band_n, f_max_n - f_min_n].map(decimal);
             return Err(TomlError::new(
                 place.unwrap_or(0..0),
                 format!(
                     "`f_max_band_n` ({}) leaves no tension between `tendon.f_min_n` ({}) and `tendon.f_max_n` ({})",
-                    plain(band_n),
+                    plain(decimal(servo.f_max_band_n)),
                     plain(file.f_min_n),
                     plain(file.f_max_n)
                 ),
-                format!(
-                    "give a band of {} at most, or a higher `f_max_n`",
-                    plain(most_n)
-                ),
+                "give a smaller band, or a higher `f_max_n`",
             ));
         }
     }
@@ -119,6 +115,9 @@ fn refused(error: Error, root: &Section<'_>) -> TomlError {
 mod tests {
     use crate::ready_rigs::READY_RIGS;
     use crate::rig_file::{RigFile, RigText};
+
+    /// What makes a file that of a leg.
+    const LEG: &str = "\n[simulation]\ncell_noise_n = 0.1\n";
 
     /// The paper's rig with other lines, and with more at its end.
     fn changed(lines: &[(&str, &str)], more: &str) -> String {
@@ -163,7 +162,6 @@ mod tests {
 
     #[test]
     fn a_leg_without_inertia_is_refused_unless_the_file_gives_it() {
-        const LEG: &str = "\n[simulation]\ncell_noise_n = 0.1\n";
         let help = "`leg_transverse_inertia_kg_m2` in `[simulation]`";
         for (line, other, key) in [
             ("leg_kg = 1.5", "leg_kg = 0", "leg_kg"),
@@ -189,7 +187,7 @@ mod tests {
     #[test]
     fn a_band_that_leaves_no_tension_is_refused() {
         let sentence = "`f_max_band_n` (143) leaves no tension";
-        let help = "give a band of 142 at most";
+        let help = "give a smaller band, or a higher `f_max_n`";
         for section in ["control.servo", "control.servo.2"] {
             let more = |band_n| format!("\n[{section}]\nf_max_band_n = {band_n}\n");
             let text = changed(&[], &more(143));
@@ -204,7 +202,7 @@ mod tests {
             ],
             "",
         );
-        assert_warned(&narrow, "(4) leaves no tension", "a band of 3 at most");
+        assert_warned(&narrow, "(4) leaves no tension", "a smaller band");
     }
 
     /// In f64 these leave 3.9999999999999996 N.
@@ -220,9 +218,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_nothing_in_the_firmware_s_f32_is_refused() {
+    fn what_is_nothing_in_the_firmware_s_f32_is_named() {
         let text = changed(&[("joint_mm = 29", "joint_mm = 1e-300")], "");
         let sentence = "`joint_mm` must be greater than zero";
         assert_warned(&text, sentence, "correct the value");
+        let leg = text + LEG;
+        assert_refused(&leg, "joint_mm = 1e-300", sentence, "correct the value");
     }
 }

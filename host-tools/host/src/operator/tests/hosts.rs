@@ -51,6 +51,21 @@ fn a_leg_that_another_host_disarms_comes_down() {
     assert_eq!(state(&mut second), State::Active);
 }
 
+/// What it is doing then is not for the one that drove it before to stop.
+#[test]
+fn a_leg_that_another_host_took_over_goes_on() {
+    let leg = hanging_leg();
+    let (mut first, mut second) = (host(&leg, 1), host(&leg, 2));
+    begin_move(&mut first);
+    let driven = first.drive(|operator| {
+        second.stop().unwrap();
+        second.command(Command::Clear).unwrap();
+        operator.command(Command::Move { x: 0.1, y: 0.0 })
+    });
+    error_of!(driven, OperatorError::Refused(_, HostRefusal::OtherHost));
+    assert_eq!(state(&mut second), State::Active);
+}
+
 #[test]
 fn to_hold_a_leg_that_moves_ends_its_move() {
     let leg = hanging_leg();
