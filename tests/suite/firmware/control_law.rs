@@ -358,7 +358,8 @@ fn a_stop_overtakes_what_waits() {
     bench.run(2 * u16::from(CYCLE_TICKS));
     assert_eq!(bench.leg.state(), State::Held);
     let outcomes: Vec<_> = std::iter::from_fn(|| bench.leg.outcome()).collect();
-    assert_eq!(outcomes.len(), 8);
+    // None is lost.
+    assert_eq!(outcomes.len(), 9);
     assert_eq!(
         outcomes.last(),
         Some(&CommandOutcome {
@@ -368,7 +369,7 @@ fn a_stop_overtakes_what_waits() {
     );
     let overtaken = Err(CommandRefusal::Superseded);
     assert!(
-        outcomes[..7]
+        outcomes[..8]
             .iter()
             .all(|outcome| outcome.result == overtaken)
     );
