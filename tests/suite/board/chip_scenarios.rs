@@ -180,9 +180,9 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
 /// It takes minutes, and does on a chip what `tour` does.
 const LEFT_OUT: &str = "workspace";
 
-/// Those that take a core 25 s to 150 s each, together 12 minutes of 22: what they do beyond the others is the control law's alone, and
-/// `bits_under_qemu` compares its bits in them.
-const LONG: [&str; 12] = [
+/// Those that take a core longest: what they do beyond the others is the control law's alone, and `bits_under_qemu` compares its bits in them. Every
+/// other one is homed first, by the same steps as `homing`.
+const LONG: [&str; 15] = [
     "fault_homing_failed",
     "fault_infeasible_load",
     "fault_not_taut",
@@ -190,7 +190,10 @@ const LONG: [&str; 12] = [
     "fault_point_missing",
     "fig9",
     "hold",
+    "homing",
     "homing_again",
+    "jog",
+    "other_tendons",
     "payload",
     "stiffness",
     "stiffness_lean",
@@ -238,7 +241,7 @@ fn require_passed(mut left: Vec<(&str, Scenario)>) -> Homings {
 /// All of them but the long ones, homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` runs all, and prints each as it
 /// ends. The samples above are run always.
 #[test]
-#[ignore = "takes seven minutes on two cores: run with --ignored"]
+#[ignore = "takes minutes on two cores: run with --ignored"]
 fn the_ready_scenarios_pass_on_the_chip_as_in_process() {
     let following = Scenario::parse("following", FOLLOWING).unwrap();
     let mut scenarios = ready(false);
@@ -251,7 +254,7 @@ fn the_ready_scenarios_pass_on_the_chip_as_in_process() {
 
 /// The long ones, each of which runs under QEMU, too.
 #[test]
-#[ignore = "takes six minutes on two cores: run with --ignored"]
+#[ignore = "takes minutes on two cores: run with --ignored"]
 fn the_long_scenarios_pass_on_the_chip_as_in_process() {
     let long = ready(true);
     assert_eq!(long.len(), LONG.len());
