@@ -180,8 +180,8 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
 /// It takes minutes, and does on a chip what `tour` does.
 const LEFT_OUT: &str = "workspace";
 
-/// Those that take a core longest: what they do beyond the others is the control law's alone, and `bits_under_qemu` compares its bits in them. Every
-/// other one is homed first, by the same steps as `homing`.
+/// Long ones that are left to the run before a release: what they do beyond the others is the control law's alone, and `bits_under_qemu` compares its
+/// bits in them.
 const LONG: [&str; 15] = [
     "fault_homing_failed",
     "fault_infeasible_load",
