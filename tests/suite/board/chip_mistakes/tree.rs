@@ -72,7 +72,7 @@ fn copy(from: &Path, to: &Path) {
         fs::create_dir_all(to).unwrap();
         for entry in fs::read_dir(from).unwrap() {
             let name = entry.unwrap().file_name();
-            if name != "target" {
+            if name != "target" && name != ".venv" {
                 copy(&from.join(&name), &to.join(&name));
             }
         }
