@@ -1,4 +1,4 @@
-//! What a moving leg does by itself whose motors stop at once, or when a fault is named.
+//! What a moving leg does by itself whose motors stop at the strike, or when the fault is named.
 
 use super::bars::StrikeBars;
 use super::preparation::PreparedLeg;

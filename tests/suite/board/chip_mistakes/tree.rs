@@ -2,6 +2,7 @@
 
 use super::Mistake;
 use leg_boards::image::{FirmwareImage, workspace_root};
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -72,7 +73,11 @@ fn copy(from: &Path, to: &Path) {
         fs::create_dir_all(to).unwrap();
         for entry in fs::read_dir(from).unwrap() {
             let name = entry.unwrap().file_name();
-            if name != "target" && name != ".venv" {
+            // What is built, and what Python and the fuzzers keep beside their sources.
+            if !["target", ".venv", "corpus", "artifacts"]
+                .map(OsString::from)
+                .contains(&name)
+            {
                 copy(&from.join(&name), &to.join(&name));
             }
         }
