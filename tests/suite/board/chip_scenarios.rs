@@ -180,7 +180,7 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
 /// It takes minutes, and does on a chip what `tour` does.
 const LEFT_OUT: &str = "workspace";
 
-/// Long ones that are left to the run before a release: what they do beyond the others is the control law's alone, and `bits_under_qemu` compares its
+/// Long ones, in a test of their own: what they do beyond the others is the control law's alone, and `bits_under_qemu` compares its
 /// bits in them. No other drives one motor with two at rest, as `jog` does.
 const LONG: [&str; 15] = [
     "fault_homing_failed",
