@@ -144,7 +144,11 @@ pub fn mixed(from: Color32, to: Color32, part: f32) -> Color32 {
 
 /// Sets colours and sizes, once.
 pub fn install(ctx: &egui::Context) {
-    ctx.options_mut(|options| options.input_options.max_double_click_delay = DOUBLE_CLICK_S);
+    ctx.options_mut(|options| {
+        options.input_options.max_double_click_delay = DOUBLE_CLICK_S;
+        // A slow page sees a press and its release some frames from each other: however long that takes, it is a click.
+        options.input_options.max_click_duration = f64::INFINITY;
+    });
     for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
         ctx.set_visuals_of(theme, visuals(theme, &palette));
     }

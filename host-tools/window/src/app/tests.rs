@@ -116,6 +116,11 @@ impl Window {
     }
 
     fn press_at(&mut self, at: Pos2) {
+        self.press_long_at(at, 0);
+    }
+
+    /// So many frames lie between the press and its release.
+    fn press_long_at(&mut self, at: Pos2, frames: u32) {
         let button = |pressed| Event::PointerButton {
             pos: at,
             button: PointerButton::Primary,
@@ -124,6 +129,7 @@ impl Window {
         };
         self.frame(vec![Event::PointerMoved(at)]);
         self.frame(vec![button(true)]);
+        self.frames(frames);
         self.frame(vec![button(false)]);
         self.frame(vec![Event::PointerMoved(Pos2::ZERO)]);
         self.frames(5);
@@ -203,6 +209,19 @@ fn a_key_stops_the_leg_from_a_menu_and_a_text_field() {
         assert!(window.shows("search"));
         assert_eq!(window.app.places.focused.as_deref(), Some("search"));
     }
+}
+
+#[test]
+fn a_press_whose_release_is_seen_late_is_a_click() {
+    let mut window = Window::new();
+    let at = window.rect("stop").center();
+    window.press_long_at(at, 100);
+    assert_eq!(window.state(), State::Held);
+    window.press("rate");
+    let at = window.rect("rate_tenth").center();
+    window.press_long_at(at, 100);
+    assert!(!window.shows("rate_tenth"));
+    assert_eq!(window.leg().pace.rate, 0.1);
 }
 
 #[test]
