@@ -187,13 +187,26 @@ class Page:
         self.press(item)
         self.wait(f"{menu} is closed", lambda state: item not in state["places"])
 
+    def wait_frames(self):
+        """Waits until a frame has seen what was done: the next one may have begun before that."""
+        since = self.state()["frames"]
+        self.wait("a frame has seen it", lambda state: state["frames"] >= since + 2)
+
+    def drag(self, start, end, steps=12):
+        """Drags something. A page takes a press and its release in one frame for no drag, however long that frame is."""
+        self.browser.press(*start)
+        self.wait_frames()
+        self.browser.lead(start, end, steps)
+        self.wait_frames()
+        self.browser.release()
+
     def slide(self, name, part):
         """Drags a slider to a part of its way, from beside that: the leg does what it is led through. Its value stands right of it."""
         left, top, right, bottom = self.rect(name)
         middle = (top + bottom) / 2
         way = (left + 8, left + SLIDER_PART * (right - left))
         at = way[0] + part * (way[1] - way[0])
-        self.browser.drag((at - 6, middle), (at, middle))
+        self.drag((at - 6, middle), (at, middle))
 
     def focus(self, name):
         """Gives a control the keyboard's focus."""
@@ -203,7 +216,7 @@ class Page:
                 return
             self.browser.key(TAB)
             # The next key must not go past a control that a slow page has not shown yet.
-            self.wait("the key is seen", lambda now: now["frames"] >= state["frames"] + 2)
+            self.wait_frames()
         raise AssertionError(f"{name} has not got the focus")
 
 
@@ -358,7 +371,7 @@ def drive(page):
     left, top, right, bottom = page.rect("workspace")
     middle, width = ((left + right) / 2, (top + bottom) / 2), right - left
     start = middle[0] + 0.36 * width, middle[1] - 0.2 * width
-    page.browser.drag(start, (middle[0] - 0.2 * width, middle[1]))
+    page.drag(start, (middle[0] - 0.2 * width, middle[1]))
     leg = page.wait_leg("leans to the other side", lambda leg: abs(leg["azimuth_deg"] - 180) < 8)
     print(f"  dragged to azimuth {leg['azimuth_deg']:.1f}°, tilt {leg['tilt_deg']:.1f}°")
     before = page.wait_leg("arrives", lambda leg: leg["error_mm"] < 3)["target"]
@@ -437,7 +450,7 @@ def rates(page):
     left, top, right, bottom = page.rect("workspace")
     middle, width = ((left + right) / 2, (top + bottom) / 2), right - left
     way = (middle[0] + 0.3 * width, middle[1]), (middle[0] - 0.2 * width, middle[1])
-    page.browser.drag(*way, steps=40)
+    page.drag(*way, steps=40)
     leg = page.wait_leg("shows the target", lambda leg: leg["target"][0] < -0.2)
     assert leg["time_s"] == before, (leg["time_s"], before)
     page.choose("rate", "rate_1")
@@ -790,7 +803,7 @@ def charts(page):
     print(f"  the trigger has caught the load at {caught['caught_s']:.3f} s")
     page.press("cursors")
     a_s, b_s = page.wait("there are cursors", lambda state: state["charts"]["cursors_s"])["charts"]["cursors_s"]
-    page.browser.drag(in_chart(page, "tensions_n", 0.7), in_chart(page, "tensions_n", 0.85))
+    page.drag(in_chart(page, "tensions_n", 0.7), in_chart(page, "tensions_n", 0.85))
     state = page.wait("one is dragged", lambda state: state["charts"]["cursors_s"][1] > b_s)
     assert state["charts"]["cursors_s"][0] == a_s and "values_tensions_n" in state["places"], state["charts"]
     page.press("stiffness_ellipse")
@@ -814,7 +827,7 @@ def scrub(page, part):
     """Goes to a part of a recording by its slider."""
     left, top, right, bottom = page.rect("scrub")
     middle = (top + bottom) / 2
-    page.browser.drag((left + 0.5 * (right - left), middle), (left + part * (right - left), middle))
+    page.drag((left + 0.5 * (right - left), middle), (left + part * (right - left), middle))
 
 
 def narrow_player(page):
@@ -859,7 +872,7 @@ def recordings(page):
     assert loaded["at_s"] > first_s + 0.9 * (last_s - first_s) and loaded["payload_kg"] > 1.99, loaded
     print(f"  at {loaded['at_s']:.2f} s: {loaded['error_mm']:.2f} mm off its target")
     page.picture("player")
-    page.browser.drag(in_chart(page, "tensions_n", 0.5), in_chart(page, "tensions_n", 0.7))
+    page.drag(in_chart(page, "tensions_n", 0.5), in_chart(page, "tensions_n", 0.7))
     page.wait("the chart is drawn aside", lambda state: state["charts"]["zoomed_s"])
     show_whole(page, "tip_error_mm")
     scrub(page, 0.02)

@@ -240,7 +240,7 @@ def drag(page):
     for _ in range(TRIES):
         left, top, right, bottom = page.rect("workspace")
         middle, width = ((left + right) / 2, (top + bottom) / 2), right - left
-        page.browser.drag(middle, (middle[0] + 0.2 * width, middle[1] - 0.1 * width))
+        page.drag(middle, (middle[0] + 0.2 * width, middle[1] - 0.1 * width))
         leg = page.wait_leg("goes to the target", lambda leg: near(leg) or leg["state"] == "held")
         if leg["state"] == "active":
             assert leg["refusal"] is None, leg["refusal"]

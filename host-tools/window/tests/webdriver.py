@@ -133,13 +133,20 @@ class Browser:
         # Without pauses: each step takes a frame of the page.
         self.pointer(*move(x, y, 0), *DOWN, *UP, *DOWN, *UP)
 
-    def drag(self, start, end, steps=12):
+    def press(self, x, y):
+        self.pointer(*move(x, y, 0), *DOWN)
+
+    def lead(self, start, end, steps):
+        """Moves the pointer along a line, in so many steps."""
         way = []
         for step in range(1, steps + 1):
             part = step / steps
             at = [a + part * (b - a) for a, b in zip(start, end)]
             way += move(*at, 40)
-        self.pointer(*move(*start, 0), *DOWN, pause(60), *way, pause(60), *UP)
+        self.pointer(*way)
+
+    def release(self):
+        self.pointer(*UP)
 
     def key(self, key):
         strokes = [{"type": "keyDown", "value": key}, pause(60), {"type": "keyUp", "value": key}]
