@@ -33,7 +33,6 @@ const COLUMNS: [&str; 5] = [
 
 /// A row as it is written.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 struct RowText {
     time_s: f64,
     azimuth_deg: f64,

@@ -66,7 +66,7 @@ impl<T: Scalar> Held<T> {
     pub fn braking(shared: &Shared<T>, momentum: Momentum<T>, hindered: bool) -> Self {
         let steps_m = momentum
             .steps_m
-            .map(|step| if stands(step) { T::zero() } else { step });
+            .map(|step| if is_still(step) { T::zero() } else { step });
         let still = steps_m.iter().all(|&step| step == T::zero());
         let brake_s = match (hindered, is_near_max(shared)) {
             (true, _) => SHORT_BRAKE_S,
@@ -124,7 +124,7 @@ impl<T: Scalar> Held<T> {
             let led_m = *step_m * part;
             // One that stands where it is led on rests: it may be turning without being counted, or not turn at all.
             let standing_m = T::from(STANDING_STEP_M);
-            if !stands(led_m) && axis.moved_m().abs() <= standing_m {
+            if !is_still(led_m) && axis.moved_m().abs() <= standing_m {
                 *step_m = T::zero();
             }
             axis.lead_by(led_m);
@@ -137,8 +137,8 @@ impl<T: Scalar> Held<T> {
     }
 }
 
-/// Whether a motor that goes so far in a tick, m, stands.
-fn stands<T: Scalar>(step_m: T) -> bool {
+/// Whether a motor that is led so far in a tick, m, is as good as at rest.
+fn is_still<T: Scalar>(step_m: T) -> bool {
     step_m.abs() <= T::from(STILL_STEP_M)
 }
 

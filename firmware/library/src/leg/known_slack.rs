@@ -18,7 +18,11 @@ impl<T: Scalar> Shared<T> {
     pub fn forget_slack(&mut self, state: State, unfaulted: bool, measured: &Measured<T>) {
         let all = !unfaulted || matches!(state, State::Homing | State::Jogging);
         let taut_n = self.taut_n();
-        for (slack, &tension_n) in self.slack_m.iter_mut().zip(&measured.steady_tensions_n) {
+        for (slack, &tension_n) in self
+            .known_slack_m
+            .iter_mut()
+            .zip(&measured.steady_tensions_n)
+        {
             if all || state == State::Active && tension_n > taut_n {
                 *slack = -T::MAX;
             }
@@ -50,14 +54,14 @@ mod tests {
             [(state, true, led), (state, false, true)]
         }) {
             for before_m in [known_m, unknown_m] {
-                shared.slack_m = before_m;
+                shared.known_slack_m = before_m;
                 shared.forget_slack(state, unfaulted, &armed);
                 let expected_m = match state {
                     _ if forgotten => unknown_m,
                     State::Active => [before_m[0], -f64::MAX, before_m[2]],
                     _ => before_m,
                 };
-                assert_eq!(shared.slack_m, expected_m, "{state:?} {unfaulted}");
+                assert_eq!(shared.known_slack_m, expected_m, "{state:?} {unfaulted}");
             }
         }
     }
@@ -67,7 +71,7 @@ mod tests {
     fn a_leg_that_brakes_with_a_fault_forgets_its_slack() {
         let settings = Settings::table_1().unwrap();
         let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
-        shared.slack_m = [0.02; 3];
+        shared.known_slack_m = [0.02; 3];
         let measured = Measured::resting([0.01; 3], [70.0; 3]);
         let momentum = Momentum {
             steps_m: [1e-6; 3],
@@ -83,6 +87,6 @@ mod tests {
         };
         let mode = Mode::begin(State::Held, &mut shared, &measured, momentum, trust);
         assert!(matches!(mode, Mode::Held(held) if held.brakes()));
-        assert_eq!(shared.slack_m, [-f64::MAX; 3]);
+        assert_eq!(shared.known_slack_m, [-f64::MAX; 3]);
     }
 }

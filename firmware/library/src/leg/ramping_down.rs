@@ -69,7 +69,7 @@ impl<T: Scalar> RampingDown<T> {
         if ends {
             // One that was paid out by the whole travel may pull yet.
             let farthest_m = shared.limits.relax_travel_m * T::from(WHOLE_PART);
-            let led = shared.slack_m.iter_mut().zip(&goals).zip(self.rest_m);
+            let led = shared.known_slack_m.iter_mut().zip(&goals).zip(self.rest_m);
             for ((slack, goal), rest_m) in led {
                 let slackens = arrived && rest_m - goal.pulled_m < farthest_m;
                 *slack = if slackens { goal.pulled_m } else { -T::MAX };
@@ -84,9 +84,9 @@ fn goals<T: Scalar>(shared: &Shared<T>, rest_m: [T; 3], trusted: bool) -> [AxisG
     let limits = &shared.limits;
     let mut travels_m = [limits.relax_travel_m; 3];
     let slack_m = if trusted {
-        slack_m(shared)
+        slack_straight_down_m(shared)
     } else {
-        Some(shared.slack_m)
+        Some(shared.known_slack_m)
     };
     if let Some(slack_m) = slack_m {
         for ((travel, slack), rest) in travels_m.iter_mut().zip(slack_m).zip(rest_m) {
@@ -109,7 +109,7 @@ fn goals<T: Scalar>(shared: &Shared<T>, rest_m: [T; 3], trusted: bool) -> [AxisG
 
 /// Where the tendons of a leg that hangs straight down are just slack, m pulled in; none where the zero is not known, or the leg
 /// leans.
-fn slack_m<T: Scalar>(shared: &Shared<T>) -> Option<[T; 3]> {
+fn slack_straight_down_m<T: Scalar>(shared: &Shared<T>) -> Option<[T; 3]> {
     let zero_m = shared.zero_m?;
     let pose = shared.estimator.direction().vector();
     // 1°: a leg that was led down is nearer than that, whatever load it carries.
@@ -227,7 +227,7 @@ mod tests {
         let rest_m = [0.01, 0.02, 0.03];
         let slack_m = [0.5 * travel_m, 0.0, 2.0 * travel_m];
         for (i, (rest, slack)) in rest_m.iter().zip(slack_m).enumerate() {
-            shared.slack_m[i] = rest - slack;
+            shared.known_slack_m[i] = rest - slack;
         }
         let goals = goals(&shared, rest_m, false);
         for ((goal, rest), slack) in goals.iter().zip(rest_m).zip(slack_m) {
@@ -253,13 +253,13 @@ mod tests {
                 let zero = |i: usize| slack_m[i] + lengths_m[i];
                 shared.zero_m = Some([zero(0), zero(1), zero(2)]);
             } else {
-                shared.slack_m = slack_m;
+                shared.known_slack_m = slack_m;
             }
             let mut ramp = RampingDown::new(&shared.limits, rest_m, trusted);
             let led_m = goals(&shared, rest_m, trusted).map(|goal| goal.pulled_m);
             let shown = measured(if comes { led_m } else { rest_m });
             while !ramp.relax(Phase::Command, &mut shared, &shown) {}
-            for (i, found_m) in shared.slack_m.into_iter().enumerate() {
+            for (i, found_m) in shared.known_slack_m.into_iter().enumerate() {
                 let expected_m = if comes && i < 2 {
                     slack_m[i]
                 } else {

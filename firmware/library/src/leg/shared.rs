@@ -34,7 +34,7 @@ pub struct Shared<T> {
     /// No tendon is paid out beyond this, m.
     pub lowest_m: [T; 3],
     /// Where the last ramp down led each tendon that it knew to be slack there, m; −MAX where that is not known.
-    pub slack_m: [T; 3],
+    pub known_slack_m: [T; 3],
     /// Whether a command or a pose was refused, until another one is accepted.
     pub refused: bool,
     /// Tendon at which homing failed the last time, from 1; 0 for none.
@@ -167,7 +167,7 @@ impl<T: Scalar> Shared<T> {
             estimate: None,
             f_max_n: settings.f_max_n.into(),
             lowest_m: [T::zero(); 3],
-            slack_m: [-T::MAX; 3],
+            known_slack_m: [-T::MAX; 3],
             refused: false,
             failed_tendon: 0,
             current_outputs: settings.current_outputs,

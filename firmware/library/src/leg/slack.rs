@@ -39,8 +39,8 @@ impl<T: Scalar> Slack<T> {
         tensions_n.iter().all(|&tension| tension > least_n)
     }
 
-    /// Takes from the goals how far the tendons are still kept from them, m, and lessens that. One that is nearer to its goal waits, and none is
-    /// paid out: it may carry the leg. Gives how far a motor may be led in a tick, m.
+    /// Moves each goal, m pulled in, back by the travel that is left, and lessens that travel. A tendon that is nearer to its goal than that
+    /// stays where it is, and none is paid out: it may carry the leg. Gives how far a motor may be led in a tick, m.
     #[inline(never)]
     pub fn reel_in(&mut self, shared: &Shared<T>, goals_m: &mut [T; 3]) -> T {
         self.wait(shared, goals_m);
@@ -48,7 +48,7 @@ impl<T: Scalar> Slack<T> {
         bounds::min(limits.ramp_m_per_s * T::from(TICK_S), limits.servo_step_m)
     }
 
-    /// Takes from the goals how far they wait, m.
+    /// The same, without the motor's step.
     #[inline(always)]
     fn wait(&mut self, shared: &Shared<T>, goals_m: &mut [T; 3]) {
         let Some(mut left_m) = self.left_m else {

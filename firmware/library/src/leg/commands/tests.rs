@@ -145,7 +145,7 @@ fn a_ramp_down_relies_on_a_pose_that_is_watched_and_no_fault_doubts() {
     ] {
         let mut leg = armed();
         leg.shared.zero_m = Some([0.2; 3]);
-        leg.shared.slack_m = SLACK_M;
+        leg.shared.known_slack_m = SLACK_M;
         leg.mode = Mode::Held(Held::resting());
         let cycles = if watched { SETTLE_CYCLES } else { 0 };
         for _ in 0..=cycles {
@@ -159,7 +159,7 @@ fn a_ramp_down_relies_on_a_pose_that_is_watched_and_no_fault_doubts() {
             unreachable!("{:?}", leg.mode.state());
         };
         assert_eq!(ramping_down.trusts_pose(), trusted, "{watched} {fault:?}");
-        let known = leg.shared.slack_m == SLACK_M;
+        let known = leg.shared.known_slack_m == SLACK_M;
         assert_eq!(known, fault.is_none(), "{watched} {fault:?}");
     }
 }
