@@ -30,7 +30,7 @@ mod trajectory;
 mod unloaded;
 
 pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
-pub use damping::SwingDamping;
+pub use damping::{MOVING_SWINGING_M, SWINGING_M, SwingDamping};
 pub use debounce::Debounce;
 pub use estimate::{Estimate, Estimator, LengthError};
 pub use filter::LowPass;

@@ -112,6 +112,40 @@ fn ctrl_c_leaves_the_leg_in_hold_without_a_fault() {
 }
 
 #[test]
+fn ctrl_c_in_a_disarm_lets_the_leg_go_on_to_relax() {
+    let board = BoardUnderTest::slow();
+    assert_eq!(board.json(&move_to("4"))["state"], "keeping station");
+    let disarming = board.wait_until_moving(board.begin(&["disarm"]));
+    signal(&disarming, "-INT");
+    let output = disarming.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = errors(&output);
+    assert!(told.contains("ended by Ctrl-C"), "{told}");
+    assert_eq!(board.state()["state"], "active", "it is led down yet");
+    wait_for("a relaxed leg", || {
+        (board.state()["state"] == "disarmed").then_some(())
+    });
+    assert_eq!(board.state()["faults"], Value::Array(vec![]));
+}
+
+#[test]
+fn ctrl_c_in_a_jog_leaves_the_leg_disarmed() {
+    let board = BoardUnderTest::new(&["--slack"]);
+    let jogging = board.begin(&["jog", "1", "--travel=-10"]);
+    wait_for("a jog", || {
+        (board.state()["state"] == "jogging").then_some(())
+    });
+    signal(&jogging, "-INT");
+    let output = jogging.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = errors(&output);
+    assert!(told.contains("ended by Ctrl-C"), "{told}");
+    let state = board.state();
+    assert_eq!(state["state"], "disarmed");
+    assert_eq!(state["faults"], Value::Array(vec![]));
+}
+
+#[test]
 fn a_fault_in_mid_move_is_reported_with_its_remedy() {
     let mut board = BoardUnderTest::slow();
     let moving = board.begin_move();

@@ -57,6 +57,30 @@ fn a_leg_that_starts_only_reads_its_sensors() {
     assert!(page.unwrap().contains(&words), "{words}");
 }
 
+/// A fault that switches the drivers off has a leg start off: the emergency stop is pressed, or its wire is torn.
+#[test]
+fn a_leg_that_starts_with_its_emergency_stop_pressed_is_off() {
+    let rig = RigFile::load(None).unwrap();
+    let settings = control_settings::settings(&rig, &rig.gains, None);
+    for emergency_stop in [false, true] {
+        let mut leg = Leg::<f64>::new(&settings).unwrap();
+        let sensors = Sensors {
+            emergency_stop,
+            ..Bench::new(None).sensors
+        };
+        for _ in 0..20 {
+            let drive = leg.tick(&sensors);
+            assert!(!drive.enabled && drive.duty == [0.0; 3]);
+        }
+        let expected = if emergency_stop {
+            State::Off
+        } else {
+            State::Disarmed
+        };
+        assert_eq!(leg.state(), expected);
+    }
+}
+
 /// A stop leaves a leg that is disarmed or off as it is, and one that ramps down goes on.
 #[test]
 fn a_stop_wakes_no_leg_and_ends_no_ramp() {

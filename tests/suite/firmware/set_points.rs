@@ -4,6 +4,7 @@
 
 use super::still_leg::StillLeg;
 use super::wild_points::{WILD_REFUSALS, point, wild};
+use crate::common::require_said;
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::{
     CYCLE_S, CYCLE_TICKS, Knot, MotionLimits, POINTS_MAX, Stream, StreamLimits, Trajectory,
@@ -114,10 +115,22 @@ fn no_points_lead_beyond_the_limits() {
     let reach = f64::from(settings.tilt_max_sine).asin();
     let reach = (0.5 * reach).tan();
     let motion = settings.motion;
+    const SPEED: f32 = 1.09;
+    const JERK: f32 = 3.3;
+    require_said(
+        "firmware/SAFETY.md",
+        &[
+            format!("the jerk may be {JERK} times its limit"),
+            format!(
+                "the speed may be {:.0} % above its own",
+                100.0 * (SPEED - 1.0)
+            ),
+        ],
+    );
     let limits = [
-        1.09 * motion.speed_rad_per_s,
+        SPEED * motion.speed_rad_per_s,
         motion.acceleration_rad_per_s2,
-        3.3 * motion.jerk_rad_per_s3,
+        JERK * motion.jerk_rad_per_s3,
     ]
     .map(|limit| 0.5 * f64::from(limit));
     const SEED: u64 = 13;

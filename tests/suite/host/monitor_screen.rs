@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::common::stalls::PATIENCE;
+use crate::common::stalls::{PATIENCE, wait_for};
 use leg_host::pseudo_terminal::PseudoTerminal;
+use rustix::process::{Pid, Signal, kill_process};
 use rustix::termios::{Winsize, tcsetwinsize};
+use serde_json::Value;
 use std::fs::OpenOptions;
 use std::process::{Child, Command};
 use std::thread::sleep;
@@ -81,4 +83,62 @@ fn a_key_does_not_wait_for_the_next_picture() {
     assert!(monitor.wait().unwrap().success());
     // Nearly all of it: the machine may stall single processes for seconds.
     assert!(begun.elapsed() < PERIOD * 9 / 10);
+}
+
+#[test]
+fn a_monitor_ends_with_its_terminal() {
+    let (terminal, mut monitor) = monitor("20");
+    read_until(&terminal, &mut String::new(), "commands nothing");
+    drop(terminal);
+    let ended = wait_for("the end of the monitor", || monitor.try_wait().unwrap());
+    // No panic, no signal: it ends by itself.
+    assert!(ended.code().is_some_and(|code| code != 101), "{ended}");
+}
+
+#[test]
+fn a_signal_ends_the_screen_and_the_terminal_is_as_before() {
+    for signal in [Signal::TERM, Signal::INT, Signal::HUP] {
+        let (terminal, mut monitor) = monitor("20");
+        let mut shown = String::new();
+        read_until(&terminal, &mut shown, "commands nothing");
+        kill_process(Pid::from_child(&monitor), signal).unwrap();
+        read_until(&terminal, &mut shown, LEAVES);
+        assert!(monitor.wait().unwrap().success(), "{signal:?}");
+    }
+}
+
+/// In the leg's own time, which a leg in this process does not wait for.
+#[test]
+fn reports_come_at_their_rate() {
+    for rate_hz in [0.5, 4.0, 100.0] {
+        let reports = 5_u8;
+        let length_s = (f64::from(reports) - 0.5) / rate_hz;
+        let output = Command::new(env!("CARGO_BIN_EXE_leg-under-test"))
+            .args(["monitor", "--on", "sim", "--json"])
+            .args(["--rate", &rate_hz.to_string()])
+            .args(["--for", &length_s.to_string()])
+            .output()
+            .unwrap();
+        let printed = String::from_utf8(output.stdout).unwrap();
+        let times_s: Vec<f64> = printed
+            .lines()
+            .map(|line| {
+                serde_json::from_str::<Value>(line).unwrap()["time_s"]
+                    .as_f64()
+                    .unwrap()
+            })
+            .collect();
+        assert_eq!(
+            times_s.len(),
+            usize::from(reports),
+            "{rate_hz} Hz: {times_s:?}"
+        );
+        for pair in times_s.windows(2) {
+            let period_s = pair[1] - pair[0];
+            assert!(
+                (period_s * rate_hz - 1.0).abs() < 0.1,
+                "{rate_hz} Hz: {period_s} s"
+            );
+        }
+    }
 }

@@ -53,11 +53,15 @@ fn brake_s(stand: &mut Stand) -> f64 {
 fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
     require_said(
         "firmware/SAFETY.md",
-        &[format!(
-            "brake within {BRAKE_S} s by their counters, {GENTLE_BRAKE_S} s where the target asks a tendon for more than {NEAR_PART} of \
-             the maximum tension, {SHORT_BRAKE_S} s where the leg homes, where **current and tension disagree** and a motor that \
-             should go more than {SLOW_PART} times as fast as the fastest has lost a tenth of its speed as the leg is stopped"
-        )],
+        &[
+            format!(
+                "brakes its motors within {BRAKE_S} s, {GENTLE_BRAKE_S} s where the target asks a tendon for more than {NEAR_PART} of \
+                 the maximum tension"
+            ),
+            format!("It brakes within {SHORT_BRAKE_S} s: - where the leg homes"),
+            format!("should go more than {SLOW_PART} times as fast as the fastest"),
+            format!("but within {SHORT_BRAKE_S} s at the soonest"),
+        ],
     );
     for (pretension_n, payload_kg, near, time_s) in [
         (70.0, 0.0, false, BRAKE_S),

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, faults, paper, pass, ticks};
+use crate::common::require_said;
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
@@ -279,6 +280,9 @@ fn a_held_leg_whose_load_cell_is_repaired_is_cleared() {
 /// tendons that carry it are not paid out for the slack one. By laws that did, the tip moved by 2.6 and 4.4 mm.
 #[test]
 fn a_held_leg_with_a_slack_tendon_is_cleared_where_it_is() {
+    const MOVES_MM: f64 = 1.0;
+    let words = format!("its tip moves by up to {MOVES_MM} mm while that is taken up");
+    require_said("firmware/SAFETY.md", &[words]);
     for payload_kg in [1.7, 2.0] {
         let rig = paper();
         let mut stand = armed(&rig, [40.0, 25.0], 1.0, 82);
@@ -304,6 +308,6 @@ fn a_held_leg_with_a_slack_tendon_is_cleared_where_it_is() {
             moved_m * 1e3
         );
         assert_eq!(stand.state(), State::Active);
-        assert!(moved_m < 1e-3, "{payload_kg} kg: {moved_m} m");
+        assert!(1e3 * moved_m < MOVES_MM, "{payload_kg} kg: {moved_m} m");
     }
 }

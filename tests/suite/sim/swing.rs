@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, paper, pass, ticks};
+use crate::common::require_said;
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, State};
@@ -143,15 +144,19 @@ fn shake(stand: &mut Stand, force_n: f64, pushes: u32, mut between: impl FnMut(&
     }
 }
 
-/// On its way it swings by what it is asked for, too, so that a greater swing alone stops it.
+/// On its way it swings by what it is asked for, too, so that a greater swing alone stops it. In how many seconds, the page of single faults says.
 #[test]
 fn a_leg_that_is_shaken_is_held_and_on_its_way_by_a_greater_swing_alone() {
+    const PUSHES: u32 = 16;
+    let within_s = f64::from(PUSHES) * SHAKE_S;
+    let words = format!("{within_s} s; {} s on its way", 2.0 * within_s);
+    require_said("host-tools/docs/fmea.md", &[words]);
     let resting = armed(&paper(), [0.0, 10.0], 0.5, 5);
     for (force_n, moves, pushes, held) in [
-        (4.0, false, 16, true),
-        (1.0, false, 24, true),
-        (1.0, true, 32, false),
-        (4.0, true, 32, true),
+        (4.0, false, PUSHES, true),
+        (1.0, false, PUSHES, true),
+        (1.0, true, 2 * PUSHES, false),
+        (4.0, true, 2 * PUSHES, true),
     ] {
         let mut stand = resting.clone();
         shake(&mut stand, force_n, pushes, |stand, push| {

@@ -8,10 +8,12 @@ use crate::common::require_said;
 use leg_base::angles;
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
+use leg_firmware::control::{MOVING_SWINGING_M, SWINGING_M};
 use leg_firmware::sensors::{Sensors, TICK_HZ};
 use leg_firmware::set_point::{SetPoint, StreamPart};
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_rig::plant_settings::PlantSettings;
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::SignalChange;
 use leg_sim::plant::Start;
@@ -346,6 +348,30 @@ fn a_swing_that_is_never_named_stays_small() {
         }
     }
     assert!(largest_mm < UNNAMED_MM, "{largest_mm} mm");
+}
+
+/// How far the tip of a leg that hangs straight down is on each side of a swing which is taken for one, mm, on every ready rig: the tendon that
+/// swings the most lies in its plane.
+#[test]
+fn a_swing_is_taken_for_one_from_what_is_said() {
+    for (least_m, about_mm, words) in [
+        (SWINGING_M, 0.3, "by about 0.3 mm to each side"),
+        (MOVING_SWINGING_M, 1.0, "by about 1 mm to each side"),
+    ] {
+        require_said("firmware/SAFETY.md", &[words.into()]);
+        for ready in READY_RIGS {
+            let rig = RigFile::parse(ready.name, ready.text).unwrap().parameters;
+            let tip_m = rig.joint_length_m + rig.leg_length_m;
+            let lever_m = rig.leg_anchors_m.map(|[x, y]| x.hypot(y)).into_iter();
+            let lever_m = lever_m.fold(0.0, f64::max);
+            let tip_mm = 1e3 * f64::from(least_m) * tip_m / lever_m;
+            assert!(
+                (tip_mm / about_mm - 1.0_f64).abs() < 0.15,
+                "{}: {tip_mm} mm",
+                ready.name
+            );
+        }
+    }
 }
 
 /// On its way a leg swings by its commands, too: a greater swing is named, and later.

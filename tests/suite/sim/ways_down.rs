@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::ready_runs::require_shadow;
+use crate::common::require_said;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, State};
 use leg_rig::ready_rigs::READY_RIGS;
@@ -79,6 +80,11 @@ fn tendons_are_paid_out_no_faster_than_is_said() {
     // Over 50 ms, in which the play of the gear is taken up.
     const LONG: usize = 400;
     const FASTEST_MM_PER_S: [f64; 2] = [7.5, 5.3];
+    let words = format!(
+        "up to {} mm/s for a moment as it begins",
+        FASTEST_MM_PER_S[0]
+    );
+    require_said("firmware/SAFETY.md", &[words]);
     let led_down =
         format!(r#"{ARM} "disarm", {{ await = {{ state = "disarmed", timeout_s = 20 }} }},"#);
     // A fault that does not touch the lengths: the disarm does not lead the leg down.

@@ -40,11 +40,17 @@ mod tests {
 
     #[test]
     fn a_reference_out_of_range_is_a_supply_that_has_failed() {
+        const LATEST_MV: [u32; 2] = [2_870, 3_760];
         for voltage in [1_182, 1_212, 1_232] {
-            assert_eq!(checked_supply(40_000, code(voltage, 2_850)), 0, "{voltage}");
-            let high = checked_supply(40_000, code(voltage, 3_800));
-            assert_eq!(high, u16::MAX, "{voltage}");
+            let [low, high] = LATEST_MV.map(|mv| checked_supply(40_000, code(voltage, mv)));
+            assert_eq!([low, high], [0, u16::MAX], "{voltage}");
         }
+        let [low, high] = LATEST_MV.map(|mv| f64::from(mv) * 1e-3);
+        let words = format!("{low:.2} and {high:.2} V at the latest");
+        assert!(
+            include_str!("../../../SAFETY.md").contains(&words),
+            "{words}"
+        );
         // A converter that reads nothing, and one at its end.
         assert_eq!(checked_supply(40_000, 0), u16::MAX);
         assert_eq!(checked_supply(40_000, u16::MAX), 0);

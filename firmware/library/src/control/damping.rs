@@ -31,11 +31,11 @@ const LEAST_M: f32 = 1e-6;
 const MOST_M: f32 = 3e-4;
 
 /// Amplitude of a tendon's swing beyond which a leg swings, m: 0.3 mm at the tip of the paper's rig.
-const SWINGING_M: f32 = 3e-5;
+pub const SWINGING_M: f32 = 3e-5;
 
 /// The same of a leg on its way, m: 1 mm at the tip. It deviates by what its payload is thought to be and by friction, too, by up to 0.6 mm
 /// (the bars of `leg moves`), and what shakes it is no fault below it.
-const MOVING_SWINGING_M: f32 = 1e-4;
+pub const MOVING_SWINGING_M: f32 = 1e-4;
 
 /// The mean over a swing of the sum of the squares of the tendons' lengths by the square of that amplitude: one tendon has the whole of
 /// it, the other two have half, and the mean of a sine's square is a half.

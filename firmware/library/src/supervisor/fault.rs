@@ -140,7 +140,7 @@ faults! {
         name: "motor turns the wrong way",
         reaction: GateOff,
         cause: "a motor counts against its voltage for reversed_time_s",
-        remedy: "swap the motor's wires or the sign of m_per_count, then clear the fault and home",
+        remedy: "swap the motor's wires or change its counts_sign, then clear the fault and home",
         clears: Command,
     }
     12 PoseLost {

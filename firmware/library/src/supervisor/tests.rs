@@ -148,6 +148,12 @@ fn nothing_but_a_clear_leads_back() {
                         !matches!(state, State::Active | State::KeepingStation | State::Homing),
                         "{fault:?} {first:?} {second:?} {third:?}"
                     );
+                    let off = fault.reaction() == Reaction::GateOff;
+                    assert_eq!(
+                        state == State::Off,
+                        off,
+                        "{fault:?} {first:?} {second:?} {third:?}"
+                    );
                 }
             }
         }

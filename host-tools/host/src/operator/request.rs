@@ -1,6 +1,7 @@
 //! Requests and their replies.
 
 use super::{Operator, OperatorError};
+use leg_firmware::command::CommandRefusal;
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use std::time::Duration;
 
@@ -79,7 +80,7 @@ impl Operator {
         })
     }
 
-    /// The reply to one of these requests, and whether the leg could not read a frame meanwhile.
+    /// The reply to one of these requests, which are the same one, and whether the leg could not read a frame meanwhile.
     pub(super) fn reply(
         &mut self,
         numbers: &[u16],
@@ -88,6 +89,12 @@ impl Operator {
         let mut lost = false;
         while let Some((number, reply)) = self.next_reply(until)? {
             if numbers.contains(&number) {
+                let superseded =
+                    HostReply::Refused(HostRefusal::Command(CommandRefusal::Superseded));
+                // A stop that is sent again goes before itself.
+                if reply == superseded && numbers.last() != Some(&number) {
+                    continue;
+                }
                 return Ok((Some(reply), lost));
             }
             let bad_frame = matches!(reply, HostReply::Refused(HostRefusal::BadFrame(_)));

@@ -1,6 +1,7 @@
 //! `leg tune` that is ended: by what is wrong with the leg, by a fault, and by its user.
 
 use super::{jog, leg};
+use crate::common::require_said;
 use leg_firmware::supervisor::{Fault, State};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
@@ -153,6 +154,8 @@ fn a_user_who_interrupts_it_leaves_the_motors_at_rest_and_knows_where() {
 fn a_user_who_interrupts_the_swing_leaves_the_leg_held() {
     let rig = RigFile::load(None).unwrap();
     let plan = SwingPlan::new(&rig);
+    let words = format!("and swing by {}°", plan.tilt_deg);
+    require_said("firmware/SAFETY.md", &[words]);
     let (line, mut operator, cancel) = leg(&rig, &rig, 1);
     let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| cancel.set());
     assert!(

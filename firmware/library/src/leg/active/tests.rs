@@ -7,7 +7,7 @@ use crate::leg::shared::{Checked, Shared};
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::settings::Settings;
 use crate::supervisor::{Fault, SETTLE_CYCLES};
-use leg_model::Direction;
+use leg_model::{Direction, Error, TensionBounds};
 
 /// What is measured of a leg at rest with these tensions.
 fn measured(tensions_n: [f64; 3]) -> Measured<f64> {
@@ -161,6 +161,29 @@ fn a_leg_rests_without_a_target_until_it_has_one_or_is_sent() {
     let _ = active.estimate(&mut shared, &measured([64.0; 3]));
     active.aim(&mut shared, &measured([64.0; 3])).unwrap();
     assert!(!active.rests_without_target());
+}
+
+/// Where there is no target in the middle of a move the motors are led nowhere in the same tick, and the move is over.
+#[test]
+fn a_leg_that_loses_its_target_stops_in_the_same_tick() {
+    let (mut active, mut shared, f_min_n) = armed(8.0);
+    let measured = measured([8.0 * f_min_n; 3]);
+    let away = Direction::from_xy(0.3, 0.0).unwrap();
+    active.go(&mut shared, &away);
+    for _ in 0..100 {
+        for phase in [Phase::Estimate, Phase::Target, Phase::Plan] {
+            active.step(phase, &mut shared, &measured).unwrap();
+        }
+    }
+    let led = |shared: &Shared<f64>| shared.axes.iter().any(|axis| axis.led_m() != 0.0);
+    assert!(active.moving() && led(&shared));
+    // What is left between the bounds leans the leg no farther.
+    let most_n = 1.001 * f_min_n;
+    shared.mechanism.bounds = TensionBounds::new(f_min_n, most_n).unwrap();
+    shared.mechanism.holding_max_n = most_n;
+    let lost = active.step(Phase::Target, &mut shared, &measured);
+    assert_eq!(lost, Err(Error::Infeasible));
+    assert!(!led(&shared) && active.rests_without_target() && shared.refused);
 }
 
 /// Where the compensation is frozen the load stays as it is, and then until the leg has come to rest: neither its way nor the command alone

@@ -98,6 +98,11 @@ fn tendons_that_stretch_otherwise_are_measured_at_their_pretension() {
 #[test]
 fn tendons_that_are_nearly_right_or_nothing_like_their_curve_are_left_as_they_are() {
     let least = f64::from(LEAST_PART);
+    let words = format!("from {} to {} times their curve", FACTORS[0], FACTORS[1]);
+    assert!(
+        include_str!("../../../../SAFETY.md").contains(&words),
+        "{words}"
+    );
     let [low, high] = FACTORS.map(f64::from);
     for factor in [
         1.0,

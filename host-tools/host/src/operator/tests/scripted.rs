@@ -1,9 +1,12 @@
 //! Boards that do not know their host, do not do as they report, and send what was not asked.
 
-use super::scripted_board::{resting_leg, scripted, scripted_from_start, telemetry_reply};
+use super::scripted_board::{
+    introduction, resting_leg, scripted, scripted_by_number, scripted_from_start, telemetry_reply,
+};
 use super::{is_failed, lean, stiffness};
 use crate::operator::{Operator, OperatorError};
 use leg_base::failure::Failure;
+use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
 use std::cell::{Cell, RefCell};
@@ -90,6 +93,28 @@ fn a_stop_is_repeated_at_its_pace_however_soon_it_is_refused() {
     // After two seconds each.
     let late = "a scripted board did not acknowledge the stop";
     assert_eq!(*told.borrow(), [late; 4]);
+}
+
+/// A board is so late that a disarm is sent again, and the second one goes before the first.
+#[test]
+fn a_repeated_disarm_is_not_refused_for_its_own_repetition() {
+    let (mut telemetry, _) = resting_leg();
+    telemetry.state = State::Disarmed;
+    let superseded = HostReply::Refused(HostRefusal::Command(CommandRefusal::Superseded));
+    for (last, accepted) in [(HostReply::Done, true), (superseded.clone(), false)] {
+        let first = Cell::new(None);
+        let superseded = superseded.clone();
+        let mut operator = scripted_by_number(move |number, request| match request {
+            HostRequest::Identify(_) => vec![(number, introduction())],
+            HostRequest::Telemetry => vec![(number, telemetry_reply(&telemetry))],
+            _ => match first.replace(Some(number)) {
+                None => Vec::new(),
+                Some(first) => vec![(first, superseded.clone()), (number, last.clone())],
+            },
+        })
+        .unwrap();
+        assert_eq!(operator.command(Command::Disarm).is_ok(), accepted);
+    }
 }
 
 /// What the operator says while the board does not answer.

@@ -24,7 +24,7 @@ struct ScriptedBoard<F> {
     now: Duration,
 }
 
-impl<F: FnMut(&HostRequest) -> Option<HostReply>> Transport for ScriptedBoard<F> {
+impl<F: FnMut(u16, &HostRequest) -> Vec<(u16, HostReply)>> Transport for ScriptedBoard<F> {
     fn name(&self) -> &'static str {
         "a scripted board"
     }
@@ -34,12 +34,13 @@ impl<F: FnMut(&HostRequest) -> Option<HostReply>> Transport for ScriptedBoard<F>
             let Some(Ok(frame)) = self.decoder.push(byte) else {
                 continue;
             };
-            if let Some(mut reply) = (self.answer)(&frame.message().unwrap()) {
+            let replies = (self.answer)(frame.sequence, &frame.message().unwrap());
+            for (number, mut reply) in replies {
                 if let HostReply::Telemetry(report) = &mut reply {
                     report.telemetry.tick = (self.now.as_secs_f64() * f64::from(TICK_HZ)) as u32;
                 }
                 let mut out = [0; MAX_FRAME];
-                let reply = frame::encode(frame.sequence, &reply, &mut out).unwrap();
+                let reply = frame::encode(number, &reply, &mut out).unwrap();
                 self.answers.extend(reply);
             }
         }
@@ -61,7 +62,17 @@ impl<F: FnMut(&HostRequest) -> Option<HostReply>> Transport for ScriptedBoard<F>
 
 /// A host of a board that answers everything so, introductions, too.
 pub fn scripted_from_start(
-    answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'static,
+    mut answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'static,
+) -> Result<Operator, OperatorError> {
+    scripted_by_number(move |number, request| {
+        let reply = answer(request);
+        reply.map(|reply| (number, reply)).into_iter().collect()
+    })
+}
+
+/// The same; each reply has the number of the request that it answers, be it an earlier one.
+pub fn scripted_by_number(
+    answer: impl FnMut(u16, &HostRequest) -> Vec<(u16, HostReply)> + 'static,
 ) -> Result<Operator, OperatorError> {
     let board = ScriptedBoard {
         answer,
@@ -75,15 +86,20 @@ pub fn scripted_from_start(
 /// A host of a board that knows it, and answers everything else so.
 pub fn scripted(mut answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'static) -> Operator {
     scripted_from_start(move |request| match request {
-        HostRequest::Identify(_) => Some(HostReply::Identified(Identity {
-            board: BoardKind::InProcess,
-            version: VERSION,
-            reset: ResetCause::Emulated,
-            crash_report: heapless::String::new(),
-        })),
+        HostRequest::Identify(_) => Some(introduction()),
         request => answer(request),
     })
     .unwrap()
+}
+
+/// What such a board says of itself.
+pub fn introduction() -> HostReply {
+    HostReply::Identified(Identity {
+        board: BoardKind::InProcess,
+        version: VERSION,
+        reset: ResetCause::Emulated,
+        crash_report: heapless::String::new(),
+    })
 }
 
 /// The telemetry of a homed leg at rest, and its settings.
