@@ -146,7 +146,8 @@ pub fn mixed(from: Color32, to: Color32, part: f32) -> Color32 {
 pub fn install(ctx: &egui::Context) {
     ctx.options_mut(|options| {
         options.input_options.max_double_click_delay = DOUBLE_CLICK_S;
-        // A slow page sees a press and its release some frames from each other: however long that takes, it is a click.
+        // A slow page sees a press and its release some frames from each other: however long that takes, it is a click. A long press of a
+        // touch has no meaning of its own here.
         options.input_options.max_click_duration = f64::INFINITY;
     });
     for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {

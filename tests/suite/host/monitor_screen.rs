@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::common::stalls::{PATIENCE, wait_for};
+use crate::common::stalls::PATIENCE;
 use leg_host::pseudo_terminal::PseudoTerminal;
-use rustix::process::{Pid, Signal, kill_process};
 use rustix::termios::{Winsize, tcsetwinsize};
 use serde_json::Value;
 use std::fs::OpenOptions;
@@ -83,28 +82,6 @@ fn a_key_does_not_wait_for_the_next_picture() {
     assert!(monitor.wait().unwrap().success());
     // Nearly all of it: the machine may stall single processes for seconds.
     assert!(begun.elapsed() < PERIOD * 9 / 10);
-}
-
-#[test]
-fn a_monitor_ends_with_its_terminal() {
-    let (terminal, mut monitor) = monitor("20");
-    read_until(&terminal, &mut String::new(), "commands nothing");
-    drop(terminal);
-    let ended = wait_for("the end of the monitor", || monitor.try_wait().unwrap());
-    // No panic, no signal: it ends by itself.
-    assert!(ended.code().is_some_and(|code| code != 101), "{ended}");
-}
-
-#[test]
-fn a_signal_ends_the_screen_and_the_terminal_is_as_before() {
-    for signal in [Signal::TERM, Signal::INT, Signal::HUP] {
-        let (terminal, mut monitor) = monitor("20");
-        let mut shown = String::new();
-        read_until(&terminal, &mut shown, "commands nothing");
-        kill_process(Pid::from_child(&monitor), signal).unwrap();
-        read_until(&terminal, &mut shown, LEAVES);
-        assert!(monitor.wait().unwrap().success(), "{signal:?}");
-    }
 }
 
 /// In the leg's own time, which a leg in this process does not wait for.

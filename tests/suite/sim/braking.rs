@@ -60,7 +60,7 @@ fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
             ),
             format!("It brakes within {SHORT_BRAKE_S} s: - where the leg homes"),
             format!("should go more than {SLOW_PART} times as fast as the fastest"),
-            format!("but within {SHORT_BRAKE_S} s at the soonest"),
+            format!("but takes {SHORT_BRAKE_S} s at least"),
         ],
     );
     for (pretension_n, payload_kg, near, time_s) in [

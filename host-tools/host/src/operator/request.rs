@@ -1,7 +1,7 @@
 //! Requests and their replies.
 
 use super::{Operator, OperatorError};
-use leg_firmware::command::CommandRefusal;
+use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use std::time::Duration;
 
@@ -25,6 +25,14 @@ pub(super) enum Repeat {
     Always,
     /// Only if the leg reported a frame that it could not read: to do it later than asked may be to do something else.
     IfLost,
+}
+
+/// Whether a request ends what the leg does.
+fn ends(request: &HostRequest) -> bool {
+    let HostRequest::Command { command, .. } = request else {
+        return false;
+    };
+    matches!(command, Command::Stop | Command::Disarm)
 }
 
 /// The reply to a request that has nothing to report.
@@ -61,7 +69,7 @@ impl Operator {
             }
             numbers.push(self.connection.send(request)?);
             let until = self.now() + reply_time;
-            let (reply, lost) = self.reply(&numbers, until)?;
+            let (reply, lost) = self.reply(&numbers, ends(request), until)?;
             busy = reply == Some(HostReply::Refused(HostRefusal::Busy));
             match reply {
                 Some(_) if busy => self.pause(BUSY_TIME)?,
@@ -80,10 +88,12 @@ impl Operator {
         })
     }
 
-    /// The reply to one of these requests, which are the same one, and whether the leg could not read a frame meanwhile.
+    /// The reply to one of these requests, which are the same one, and whether the leg could not read a frame meanwhile. One that `ends` what
+    /// the leg does, a stop or a disarm, supersedes its earlier copies: what is said of those is no reply.
     pub(super) fn reply(
         &mut self,
         numbers: &[u16],
+        ends: bool,
         until: Duration,
     ) -> Result<(Option<HostReply>, bool), OperatorError> {
         let mut lost = false;
@@ -91,8 +101,7 @@ impl Operator {
             if numbers.contains(&number) {
                 let superseded =
                     HostReply::Refused(HostRefusal::Command(CommandRefusal::Superseded));
-                // A stop that is sent again goes before itself.
-                if reply == superseded && numbers.last() != Some(&number) {
+                if ends && reply == superseded && numbers.last() != Some(&number) {
                     continue;
                 }
                 return Ok((Some(reply), lost));

@@ -84,7 +84,7 @@ impl Operator {
     /// Whether one of these stops is acknowledged before it is time for the next.
     fn stop_acknowledged(&mut self, numbers: &[u16]) -> Result<bool, OperatorError> {
         let until = self.now() + STOP_TIME;
-        while let Some(reply) = self.reply(numbers, until)?.0 {
+        while let Some(reply) = self.reply(numbers, true, until)?.0 {
             match reply {
                 // Where the state does not allow it, the leg ramps down or starts: nothing of it follows commands.
                 HostReply::Done
