@@ -11,9 +11,9 @@ const TURNS: &[&str] = &[
 
 const WEIGHTS: &[&str] = &[
     r#"{"hang":{"cell":1,"newtons":0}}"#,
-    r#"{"hang":{"cell":1,"newtons":9.81}}"#,
-    r#"{"hang":{"cell":1,"newtons":19.62}}"#,
     r#"{"hang":{"cell":1,"newtons":49.05}}"#,
+    r#"{"hang":{"cell":1,"newtons":98.1}}"#,
+    r#"{"hang":{"cell":1,"newtons":147.15}}"#,
 ];
 
 #[test]
