@@ -752,7 +752,7 @@ def tuning(page):
     page.picture("tuned")
     page.press("tune_take")
     changed = page.wait("the settings have it", lambda state: state["setup"]["changed"])["setup"]["changed"]
-    assert "actuator.resistance_ohm" in changed, changed
+    assert "actuator.2.resistance_ohm" in changed, changed
     assert "tendon.measured.elongation_factor" in changed, changed
     print(f"  measured: {', '.join(changed)}")
     page.press("setup")
