@@ -75,6 +75,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use leg_base::failure::Failure;
 use leg_commands::LegCommand;
 use options::Options;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Models, simulates and commands a tendon-driven leg, and checks its firmware without a board.
@@ -152,10 +153,22 @@ fn negative_values(command: clap::Command) -> clap::Command {
     command.mut_subcommands(negative_values)
 }
 
+/// An argument, with a zero before the point of a negative number: without one clap takes it for an option.
+fn with_zero(argument: OsString) -> OsString {
+    let decimals = argument.to_str().and_then(|text| text.strip_prefix("-."));
+    match decimals {
+        Some(decimals) if decimals.starts_with(|first: char| first.is_ascii_digit()) => {
+            format!("-0.{decimals}").into()
+        }
+        _ => argument,
+    }
+}
+
 /// Runs the command that this process's arguments name, and prints its error on standard error.
 #[must_use]
 pub fn main() -> ExitCode {
-    let matches = command().try_get_matches();
+    let arguments = std::env::args_os().map(with_zero);
+    let matches = command().try_get_matches_from(arguments);
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => return output::usage(&error),
@@ -201,5 +214,23 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Strikes(args) => strikes::run(args, options),
         Command::Tune(args) => tune::run(args, options),
         Command::Ui(args) => ui::run(args, options),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_zero;
+
+    #[test]
+    fn a_negative_number_needs_no_zero_before_its_point() {
+        for (given, taken) in [
+            ("-.5", "-0.5"),
+            ("-0.5", "-0.5"),
+            (".5", ".5"),
+            ("-.", "-."),
+            ("-.toml", "-.toml"),
+        ] {
+            assert_eq!(with_zero(given.into()), taken);
+        }
     }
 }
