@@ -48,8 +48,9 @@ def test_a_cancelled_call_and_a_stop_leave_the_leg_in_hold():
     async def main():
         async with await AsyncLeg.emulated() as leg:
             with pytest.raises(TimeoutError):
-                async with asyncio.timeout(0.05):
-                    await leg.follow([[t, 0.0, 10.0 * t / 60.0] for t in range(61)])
+                # Long enough for a busy machine to begin it.
+                async with asyncio.timeout(1.0):
+                    await leg.follow([[60.0 * t, 0.0, 10.0 * t / 60.0] for t in range(61)])
             cancelled = (await leg.telemetry())["state"]
             # What only asks does not stop the leg when it is cancelled.
             await leg.clear()
@@ -63,23 +64,26 @@ def test_a_cancelled_call_and_a_stop_leave_the_leg_in_hold():
             await leg.stop()
             await leg.clear()
             moving = asyncio.create_task(leg.follow([[t, 0.0, 10.0 * t / 60.0] for t in range(61)]))
-            await asyncio.sleep(0.05)
-            await leg.stop()
-            with pytest.raises(LegError):
-                await moving
+            await stopped(leg, moving)
             return cancelled, (await leg.telemetry())["state"]
 
     assert asyncio.run(main()) == ("held", "held")
+
+
+async def stopped(leg, moving):
+    await asyncio.sleep(0.05)
+    # Until it has begun, a stop is over before.
+    while not moving.done():
+        await leg.stop()
+    with pytest.raises(LegError):
+        await moving
 
 
 async def homed_moved_and_stopped(leg):
     assert (await leg.home())["homed"]
     assert (await leg.move(azimuth_deg=30, tilt_deg=5))["tilt_deg"] == pytest.approx(5.0, abs=0.1)
     moving = asyncio.create_task(leg.follow([[t, 30.0, 5.0 + t / 10.0] for t in range(61)]))
-    await asyncio.sleep(0.05)
-    await leg.stop()
-    with pytest.raises(LegError):
-        await moving
+    await stopped(leg, moving)
     assert (await leg.telemetry())["state"] == "held"
 
 

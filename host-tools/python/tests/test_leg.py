@@ -226,7 +226,7 @@ def test_a_stop_from_another_thread_ends_what_the_leg_does():
     leg, begun, ended = Leg.emulated(), threading.Event(), []
 
     def follow():
-        points = circle(1000.0)
+        points = circle(100.0)
         begun.set()
         try:
             leg.follow(points)
@@ -262,7 +262,7 @@ def test_ctrl_c_leaves_the_leg_in_hold():
     leg = Leg.emulated()
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        leg.follow(circle(1000.0))
+        leg.follow(circle(100.0))
     assert leg.telemetry()["state"] == "held"
 
 

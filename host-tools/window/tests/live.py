@@ -25,7 +25,7 @@ LEG = HERE.parents[2] / "target" / "debug" / "leg"
 # its leg often enough for those is a test of its own, by counts.
 PATIENT = "\n[control.limits]\ncommand_time_s = 2\n"
 
-# Time in which a leg whose page has gone is held, s; and for which a page is hidden, so that its leg is held meanwhile.
+# Time of a leg in which it is held once its page has gone, s; and of the clock for which a page is hidden, so that its leg is held meanwhile.
 HELD_S = 5.0
 HIDDEN_S = 4.0
 
@@ -190,8 +190,9 @@ def cut_socket(served, page):
         page.wait_leg("is heard", lambda leg: leg["live"] and leg["time_s"] > 0)
         unlock(page)
         cutter.cut()
-        leg = page.wait_leg("is lost", lambda leg: leg["failure"])
-        assert "connection is lost" in leg["failure"] and leg["locked"], leg
+        # A page that is drawn once in seconds says first that its leg does not answer.
+        leg = page.wait_leg("is lost", lambda leg: "connection is lost" in (leg["failure"] or ""))
+        assert leg["locked"], leg
         print(f"cut: {leg['failure']}")
     page.browser.open("about:blank")
     page.open(served.url)
@@ -287,7 +288,12 @@ def measure(page):
     page.press("setup")
     page.press("setup_steps")
     page.press("guide_tune")
-    page.press("tune_start")
+    # It takes no press before the supply's voltage has come over the line.
+    for _ in range(TRIES):
+        page.press("tune_start")
+        page.wait_frames()
+        if "tune_start" not in page.state()["places"]:
+            break
     assert "tune_swings" not in page.state()["places"]
     ended = page.wait("it is measured", lambda state: {"tune_result", "tune_failed"} & set(state["places"]), 200)
     assert "tune_failed" not in ended["places"], ended["setup"]["measure_failed"]
@@ -318,9 +324,9 @@ def second_page(served, page):
         # The first page goes while the leg follows it.
         go_on(page)
         page.browser.open("about:blank")
-        began = time.monotonic()
+        began_s = other.state()["leg"]["time_s"]
         leg = other.wait_leg("is held by itself", lambda leg: leg["state"] != "active")
-        took_s = time.monotonic() - began
+        took_s = leg["time_s"] - began_s
         print(f"the page that drove is gone: the leg is {leg['state']}, {', '.join(leg['faults'])}")
         assert leg["state"] == "held" and leg["faults"] == ["no command"] and took_s < HELD_S, (leg, took_s)
         other.wait_leg("is free", lambda leg: leg["drives"] == [False, False])
@@ -331,8 +337,8 @@ def second_page(served, page):
 
 def lost(served, page):
     served.end()
-    leg = page.wait_leg("is lost", lambda leg: leg["failure"])
-    assert "held by itself" in leg["failure"] and leg["locked"], leg
+    leg = page.wait_leg("is lost", lambda leg: "held by itself" in (leg["failure"] or ""))
+    assert leg["locked"], leg
     page.press("stop")
     time.sleep(0.3)
     assert not (errors := severe(page.browser)), errors
@@ -357,7 +363,7 @@ def hidden(page):
     page.browser.run(COUNTED)
     with page.browser.covered():
         time.sleep(HIDDEN_S)
-    leg = page.wait_leg("is held", lambda leg: leg["state"] == "held", ANSWER_S)
+    leg = page.wait_leg("is held", lambda leg: leg["state"] == "held")
     counts = page.browser.run("return window.counts")
     assert counts["hidden"] == 1 and counts["seen"] > 0 and counts["life_of_hidden"] == 0, counts
     assert leg["faults"] == ["no command"] and leg["drives"] == [True, False], leg

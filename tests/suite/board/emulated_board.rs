@@ -164,11 +164,14 @@ fn a_fault_in_mid_move_is_reported_with_its_remedy() {
         "{}",
         errors(&output)
     );
-    let (code, told) = board.refused(&["clear"]);
-    assert_eq!(code, Some(2));
+    let output = board.run_until_acknowledged(&["clear"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = errors(&output);
     assert!(told.contains("release it when it is safe"), "{told}");
     board.act(r#"{"emergency_stop":false}"#);
-    assert_eq!(board.json(&["clear"])["state"], "disarmed");
+    let output = board.run_until_acknowledged(&["clear"]);
+    assert!(output.status.success(), "{}", errors(&output));
+    assert_eq!(board.state()["state"], "disarmed");
 }
 
 #[test]

@@ -64,10 +64,16 @@ impl StallWatch {
     }
 
     /// The longest time in which it did nothing.
-    pub fn longest(self) -> Duration {
+    fn longest(self) -> Duration {
         self.ended.store(true, Ordering::Relaxed);
         self.thread.join().unwrap_or_default()
     }
+}
+
+/// The longest time in which one of several processes did nothing.
+pub fn longest_stall(watches: impl IntoIterator<Item = StallWatch>) -> Duration {
+    let stalls = watches.into_iter().map(StallWatch::longest);
+    stalls.max().unwrap_or_default()
 }
 
 /// How often a process has waited for something; none where it has ended.

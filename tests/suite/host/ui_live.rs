@@ -24,9 +24,18 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::http::{HeaderValue, StatusCode};
 use tungstenite::{Error, HandshakeError, Message, WebSocket, client};
 
-/// A slow leg that is held after two seconds of silence, so that a busy machine does not have it held in mid-move.
-const PATIENT: &str =
-    "[control.limits]\ncommand_time_s = 2\n[control.motion]\nspeed_rad_per_s = 0.05\n";
+/// The rig file of a slow leg that is held after so many seconds of silence, so that a busy machine does not have it held in mid-move.
+fn patient(command_time_s: u32) -> NamedTempFile {
+    let mut rig = NamedTempFile::new().unwrap();
+    let table1 = READY_RIGS[0].text;
+    let limits = format!("[control.limits]\ncommand_time_s = {command_time_s}\n");
+    write!(
+        rig,
+        "{table1}\n{limits}[control.motion]\nspeed_rad_per_s = 0.05\n"
+    )
+    .unwrap();
+    rig
+}
 
 /// What is heard in one turn.
 #[derive(Default)]
@@ -49,8 +58,7 @@ struct Page {
 
 /// Serves a leg that is emulated in the process.
 fn served() -> Served {
-    let mut rig = NamedTempFile::new().unwrap();
-    write!(rig, "{}\n{PATIENT}", READY_RIGS[0].text).unwrap();
+    let rig = patient(2);
     Served::new(&["--on", "sim", "--rig", &rig.path().display().to_string()])
 }
 
@@ -292,8 +300,8 @@ fn a_page_that_sends_something_else_is_dropped() {
 
 /// A leg in this place is heard by a page, which unlocks it and homes it.
 fn homes(place: &str) {
-    let mut rig = NamedTempFile::new().unwrap();
-    write!(rig, "{}\n{PATIENT}", READY_RIGS[0].text).unwrap();
+    // The emulators take most of the processor.
+    let rig = patient(30);
     let served = Served::new(&["--on", place, "--rig", &rig.path().display().to_string()]);
     Page::new(&served).0.home();
 }

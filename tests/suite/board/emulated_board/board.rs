@@ -93,6 +93,14 @@ impl BoardUnderTest {
         self.command(arguments).output().unwrap()
     }
 
+    /// The same, again where a leg that a busy machine keeps from running did not acknowledge it.
+    pub fn run_until_acknowledged(&self, arguments: &[&str]) -> Output {
+        wait_for("an acknowledgement", || {
+            let output = self.run(arguments);
+            (!errors(&output).contains("did not acknowledge")).then_some(output)
+        })
+    }
+
     /// Runs a command that succeeds; the JSON that it prints.
     pub fn json(&self, arguments: &[&str]) -> Value {
         let output = self.run(&[arguments, &["--json"]].concat());

@@ -1,7 +1,7 @@
 //! Read-only commands: logs, monitors, datagrams.
 
 use super::board::{BoardUnderTest, LOG_STALL, PATIENT, SLOW, errors, move_to, signal};
-use crate::common::stalls::{PATIENCE, StallWatch, unless_stalled, wait_for};
+use crate::common::stalls::{PATIENCE, StallWatch, longest_stall, unless_stalled, wait_for};
 use leg_host::recording;
 use leg_host::transport::Transport;
 use leg_host::transport::serial::Serial;
@@ -42,8 +42,7 @@ fn log_beside_a_move(directory: &Path) -> (Result<(), String>, Duration) {
     }
     let moved = moving.wait_with_output().unwrap();
     assert!(moved.status.success(), "{}", errors(&moved));
-    let watches = [log_watch, monitor_watch, board_watch].into_iter();
-    let stall = watches.map(StallWatch::longest).max().unwrap();
+    let stall = longest_stall([log_watch, monitor_watch, board_watch]);
     assert!(interrupted(monitor).status.success());
     let output = interrupted(log);
     assert!(output.status.success(), "{}", errors(&output));
@@ -107,8 +106,8 @@ fn two_logs_record_at_their_own_rates() {
                 outcome = outcome.and(recorded);
             }
         }
-        let stall = watches.into_iter().map(StallWatch::longest).max();
-        (outcome, stall.unwrap())
+        let stall = longest_stall(watches);
+        (outcome, stall)
     });
 }
 
@@ -127,13 +126,13 @@ fn a_log_goes_on_where_another_one_ends() {
             std::thread::sleep(Duration::from_millis(500));
         }
         let ended = unless_ended(log);
-        let stall = watches.map(StallWatch::longest).into_iter().max();
+        let stall = longest_stall(watches);
         let outcome = ended.and_then(|output| {
             let logged: Value = serde_json::from_slice(&output.stdout).unwrap();
             let whole = logged["lost"] == 0 && logged["longest_s"].as_f64().unwrap() < 0.1;
             whole.then_some(()).ok_or_else(|| logged.to_string())
         });
-        (outcome, stall.unwrap())
+        (outcome, stall)
     });
 }
 
@@ -145,13 +144,15 @@ fn a_monitor_keeps_its_rate_beside_a_fast_log() {
         let board = BoardUnderTest::new(&[]);
         let log = board.begin_log(&directory.path().join("leg.csv"), &["--rate", "400"]);
         let watches = [&board.process, &log].map(StallWatch::begin);
-        let shown = board.run(&["monitor", "--json", "--rate", "50", "--for", "2"]);
+        let monitor = board.begin(&["monitor", "--json", "--rate", "50", "--for", "2"]);
+        let monitor_watch = StallWatch::begin(&monitor);
+        let shown = monitor.wait_with_output().unwrap();
         let lines = shown.stdout.iter().filter(|byte| **byte == b'\n').count();
         let ended = unless_ended(log).map(|_| ());
-        let stall = watches.map(StallWatch::longest).into_iter().max();
+        let stall = longest_stall(watches.into_iter().chain([monitor_watch]));
         let enough = (lines > 50).then_some(());
         let outcome = ended.and(enough.ok_or_else(|| format!("{lines} lines in 2 s")));
-        (outcome, stall.unwrap())
+        (outcome, stall)
     });
 }
 

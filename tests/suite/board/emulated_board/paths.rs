@@ -1,7 +1,7 @@
 //! `leg follow` on an emulated board: a file, a program that stops, a host that dies.
 
 use super::board::{BoardUnderTest, IMPATIENT, errors};
-use crate::common::stalls::{StallWatch, unless_stalled, wait_for};
+use crate::common::stalls::{StallWatch, longest_stall, unless_stalled, wait_for};
 use std::io::Write;
 use std::process::{Child, Output, Stdio};
 use std::time::Duration;
@@ -34,9 +34,9 @@ fn a_file_is_followed_to_its_end() {
     unless_stalled(HOST_STALL, || {
         // The machine may have much else to do.
         let following = board.begin(&["follow", path, "--lead", "2"]);
-        let watch = StallWatch::begin(&following);
+        let watches = [&board.process, &following].map(StallWatch::begin);
         let output = following.wait_with_output().unwrap();
-        let stall = watch.longest();
+        let stall = longest_stall(watches);
         if !output.status.success() {
             let _ = board.run(&["clear"]);
             return (Err(errors(&output)), stall);
@@ -56,12 +56,12 @@ fn a_program_that_stops_writing_ends_in_rest() {
     unless_stalled(HOST_STALL, || {
         let board = BoardUnderTest::new(&[]);
         let mut following = follow_program(&board);
-        let watch = StallWatch::begin(&following);
+        let watches = [&board.process, &following].map(StallWatch::begin);
         let mut rows_in = following.stdin.take().unwrap();
         rows_in.write_all(rows()[..80].concat().as_bytes()).unwrap();
         // It does not wait for the next row to say so.
         let output = wait_for_end(following);
-        let stall = watch.longest();
+        let stall = longest_stall(watches);
         drop(rows_in);
         let told = errors(&output);
         if !told.contains("fault 28, set-point missing") {
@@ -84,7 +84,7 @@ fn a_program_whose_host_dies_leaves_the_leg_in_hold() {
     unless_stalled(HOST_STALL, || {
         let board = BoardUnderTest::with_sections(IMPATIENT, &[]);
         let mut following = follow_program(&board);
-        let watch = StallWatch::begin(&following);
+        let watches = [&board.process, &following].map(StallWatch::begin);
         board.wait_for_port(&following);
         let mut rows_in = following.stdin.take().unwrap();
         rows_in.write_all(rows().concat().as_bytes()).unwrap();
@@ -95,7 +95,7 @@ fn a_program_whose_host_dies_leaves_the_leg_in_hold() {
         });
         let _ = following.kill();
         let output = following.wait_with_output().unwrap();
-        let stall = watch.longest();
+        let stall = longest_stall(watches);
         if !on_its_way {
             return (Err(errors(&output)), stall);
         }
