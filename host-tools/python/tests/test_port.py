@@ -34,8 +34,13 @@ def emulator(*arguments, command_time_s=30):
 
 
 @pytest.fixture
-def port():
-    with emulator() as name:
+def command_time_s():
+    return 30
+
+
+@pytest.fixture
+def port(command_time_s):
+    with emulator(command_time_s=command_time_s) as name:
         yield name
 
 
@@ -143,12 +148,8 @@ def test_ctrl_c_in_mid_move_leaves_a_leg_on_a_port_in_hold_at_once(port):
 
 
 @needs_leg
-def test_an_interpreter_that_is_killed_in_mid_move_leaves_the_leg_in_hold():
-    with emulator(command_time_s=2) as port:
-        leaves_the_leg_in_hold_when_killed(port)
-
-
-def leaves_the_leg_in_hold_when_killed(port):
+@pytest.mark.parametrize("command_time_s", [2])
+def test_an_interpreter_that_is_killed_in_mid_move_leaves_the_leg_in_hold(port):
     with subprocess.Popen([sys.executable, "-c", DRIVEN, port], stdout=subprocess.PIPE, text=True) as driver:
         assert driver.stdout.readline() == "opened\n"
         with Leg.open(port) as watcher:

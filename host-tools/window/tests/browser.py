@@ -42,9 +42,11 @@ COST_FRAMES = 120
 LOOKS = 3
 MOST_LOOKS = 9
 
-# How long the rate of a leg's time is measured for, s, and how far a frame that is late may put it off.
+# How long the rate of a leg's time is measured for, s; how far a frame that is late may put it off; and the least of it that a page may be
+# too slow for, so that it leaves the rest out.
 RATE_S = 3.0
-RATE_PART = 0.4
+RATE_PART = 0.2
+SLOW_PART = 0.3
 
 # How far the leg's time may be behind the clock's.
 REAL_TIME = 0.9
@@ -302,13 +304,13 @@ def fast(page):
 
 
 def look_until(look, holds):
-    """Looks until the last ones hold, by their medians. What never holds fails: other programs keep the processor for a time only."""
+    """What was seen until the last looks hold, by their medians: other programs keep the processor for a time only."""
     seen = []
     while len(seen) < MOST_LOOKS:
         seen.append(look())
         if len(seen) >= LOOKS and holds(*map(statistics.median, zip(*seen[-LOOKS:]))):
             return seen
-    raise AssertionError(f"none of {MOST_LOOKS} looks holds: {seen}")
+    raise AssertionError(f"no {LOOKS} looks in a row hold by their medians: {seen}")
 
 
 def check_speed(page):
@@ -455,11 +457,18 @@ def stops(page):
     page.wait_leg("is stopped by the button", lambda leg: leg["state"] == "held")
 
 
-def now(page):
-    """The leg's time and what a slow page has left out of it, s, of a frame that was just drawn; and the clock's."""
-    page.wait_frames()
-    leg = page.state()["leg"]
-    return (leg["time_s"], leg["left_out_s"]), time.monotonic()
+def measured_rate(page):
+    """The rate of the leg's time by the clock, without and with what a slow page leaves out."""
+
+    def times_s():
+        page.wait_frames()
+        leg = page.state()["leg"]
+        return leg["time_s"], leg["left_out_s"], time.monotonic()
+
+    before_s = times_s()
+    time.sleep(RATE_S)
+    leg_s, left_out_s, clock_s = (after_s - at_s for at_s, after_s in zip(before_s, times_s()))
+    return leg_s / clock_s, (leg_s + left_out_s) / clock_s
 
 
 def rates(page):
@@ -467,12 +476,9 @@ def rates(page):
     start_again(page)
     for name, nominal in (("rate_8", 8.0), ("rate_tenth", 0.1)):
         page.choose("rate", name)
-        before, began = now(page)
-        time.sleep(RATE_S)
-        after, ended = now(page)
-        rate = (sum(after) - sum(before)) / (ended - began)
-        print(f"  {name}: leg's time / clock {rate:.3f}, {after[1] - before[1]:.2f} s of it left out")
-        assert abs(rate / nominal - 1) < RATE_PART and after[0] > before[0], (name, before, after, ended - began)
+        right = lambda rate, whole: rate > SLOW_PART * nominal and abs(whole / nominal - 1) < RATE_PART
+        rate, whole = look_until(lambda: measured_rate(page), right)[-1]
+        print(f"  {name}: leg's time / clock {rate:.3f}, {whole:.3f} with what is left out")
     page.choose("rate", "rate_0")
     before = page.wait_leg("stands still", lambda leg: leg["rate"] == 0)["time_s"]
     left, top, right, bottom = page.rect("workspace")
@@ -979,11 +985,11 @@ PARTS = (
 
 # What is measured is alone; the rest is shared by browsers beside each other, which take about as long as each other: most of it waits
 # for the leg's time.
-MEASURED = (check_speed, check_bits)
+MEASURED = (check_speed, check_bits, rates)
 SHARED = (
     (first_visit, recordings, steps),
     (drive, breaks, rig_files, settings, stops, looks),
-    (rates, sliders, maps, pushes, charts, tuning),
+    (sliders, maps, pushes, charts, tuning),
 )
 assert {*MEASURED, *sum(SHARED, ())} == {*PARTS}
 
@@ -1004,7 +1010,7 @@ def open_page(page, file, directory):
     for address in (file.as_uri(), serve(directory)):
         took_s = look_until(lambda: (page.open(address),), lambda load_s: load_s <= LOAD_S)
         told = ", ".join(f"{load_s:.2f}" for load_s, in took_s)
-        print(f"{address.split(':')[0]}: loaded in {told} s; the median of {LOOKS} is held to {LOAD_S:.0f} s")
+        print(f"{address.split(':')[0]}: loaded in {told} s; the median of the last {LOOKS} is held to {LOAD_S:.0f} s")
 
 
 def share(directory):

@@ -288,13 +288,16 @@ def measure(page):
     page.press("setup")
     page.press("setup_steps")
     page.press("guide_tune")
+    page.wait_for("tune_start")
+    assert "tune_swings" not in page.state()["places"]
     # It takes no press before the supply's voltage has come over the line.
     for _ in range(TRIES):
         page.press("tune_start")
         page.wait_frames()
         if "tune_start" not in page.state()["places"]:
             break
-    assert "tune_swings" not in page.state()["places"]
+    else:
+        raise AssertionError("it is not begun")
     ended = page.wait("it is measured", lambda state: {"tune_result", "tune_failed"} & set(state["places"]), 200)
     assert "tune_failed" not in ended["places"], ended["setup"]["measure_failed"]
     page.press("tune_take")
@@ -361,9 +364,11 @@ def hidden(page):
     """A page behind another one falls silent at once, not only once it stands still, and its leg is held."""
     go_on(page)
     page.browser.run(COUNTED)
+    before_s = page.state()["leg"]["time_s"]
     with page.browser.covered():
         time.sleep(HIDDEN_S)
-    leg = page.wait_leg("is held", lambda leg: leg["state"] == "held")
+    leg = page.wait_leg("is heard again", lambda leg: leg["time_s"] > before_s + HIDDEN_S - 1)
+    assert leg["state"] == "held", leg
     counts = page.browser.run("return window.counts")
     assert counts["hidden"] == 1 and counts["seen"] > 0 and counts["life_of_hidden"] == 0, counts
     assert leg["faults"] == ["no command"] and leg["drives"] == [True, False], leg

@@ -73,8 +73,8 @@ fn copy(from: &Path, to: &Path) {
         fs::create_dir_all(to).unwrap();
         for entry in fs::read_dir(from).unwrap() {
             let name = entry.unwrap().file_name();
-            // What is built, and what Python and the fuzzers keep beside their sources.
-            if !["target", ".venv", "corpus", "artifacts"]
+            // What is built, what the fuzzers keep beside their sources, and workspaces of their own, whose tests write beside this one.
+            if !["target", "corpus", "artifacts", "python", "window"]
                 .map(OsString::from)
                 .contains(&name)
             {

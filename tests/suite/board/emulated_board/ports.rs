@@ -98,7 +98,7 @@ fn a_move_that_is_suspended_leaves_the_leg_in_hold() {
     let moving = board.begin_move();
     signal(&moving, "-STOP");
     // It has the port, so that nobody sees the leg before it goes on: by then the leg has waited for a command for too long.
-    // An emulator that is kept from running is never ahead of the clock; the move takes longer than that.
+    // The emulator leaves out the time for which it is kept from running: by the clock the leg's 6 s take longer. The move takes 50 s.
     sleep(Duration::from_secs(30));
     signal(&moving, "-CONT");
     let output = moving.wait_with_output().unwrap();
