@@ -15,8 +15,12 @@ const SPEED_M_PER_S: f32 = 2e-3;
 pub const SERVO_REMEDY: &str = "lower position_gain_per_s and speed_gain_v_s_per_m in `[control.servo]`, or write the measured constants \
      into the rig file and let the gains follow from them";
 
-/// Least change of a tension that counts as one, N.
-const CHANGE_MIN_N: f32 = 1.0;
+/// Least change of a tension that says something of a load cell, N: tendons that just pull change by 2 N where the leg swings.
+const CHANGE_MIN_N: f32 = 3.0;
+
+/// Part of another tendon's change below which a load cell shows nothing of its own tendon. Where a tendon pulls against another one, it changes by
+/// about half as much, the weight of the leg left out: their directions differ by 120°.
+const OWN_PART: f32 = 0.2;
 
 /// The voltage at which a motor, from 1, turns slowly: twice its friction, and what a slow turn induces; below what counts as driven.
 #[must_use]
@@ -168,13 +172,12 @@ impl Finding {
 #[must_use]
 pub fn findings(report: &JogReport<f32>, settings: &Settings) -> Vec<Finding> {
     let found = end_finding(report, settings);
-    // A motor that turned another way, or another motor, shows nothing of the cells.
-    let asked = !matches!(report.end, JogEnd::WrongWay | JogEnd::OtherEncoder(_));
-    let tensions = asked.then(|| tension_finding(report)).flatten();
-    found.into_iter().chain(tensions).collect()
+    found.into_iter().chain(tension_finding(report)).collect()
 }
 
-fn end_finding(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
+/// What does not fit in how it ended.
+#[must_use]
+pub fn end_finding(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
     let motor = report.demand.motor;
     Some(match report.end {
         // What a monitor ended before the jog itself did.
@@ -250,8 +253,13 @@ fn no_counts(report: &JogReport<f32>, settings: &Settings) -> Finding {
     }
 }
 
-/// Whether the tension of the tendon went the way that its motor turned.
-fn tension_finding(report: &JogReport<f32>) -> Option<Finding> {
+/// What does not fit in how the tensions changed: that of the tendon goes the way that its motor turns.
+#[must_use]
+pub fn tension_finding(report: &JogReport<f32>) -> Option<Finding> {
+    // A motor that turned another way, or another motor, shows nothing of the cells.
+    if matches!(report.end, JogEnd::WrongWay | JogEnd::OtherEncoder(_)) {
+        return None;
+    }
     let own = usize::from(report.demand.motor).checked_sub(1)?;
     let sign = report.demand.travel_m.signum();
     let [before, after] = &report.tensions_n;
@@ -272,10 +280,13 @@ fn tension_finding(report: &JogReport<f32>) -> Option<Finding> {
             "swap the signal wires of the load cell",
         ));
     }
-    (most > CHANGE_MIN_N && rise < 0.5 * most).then(|| {
+    (most > CHANGE_MIN_N && rise < OWN_PART * most).then(|| {
         Finding::new(
             format!("load cell {other} shows what tendon {motor} pulls"),
-            format!("interchange load cells {motor} and {other}"),
+            format!(
+                "jog motor {other}: if load cell {motor} shows what its tendon pulls, interchange the two; else look at the wires of load \
+                 cell {motor}"
+            ),
         )
     })
 }

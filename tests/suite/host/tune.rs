@@ -4,6 +4,7 @@
 
 mod endings;
 mod servo;
+mod stopped;
 
 use fastrand::Rng;
 use leg_firmware::drive::Drive;

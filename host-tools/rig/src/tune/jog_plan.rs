@@ -12,15 +12,15 @@ pub(super) const REEL_MAX_M: f32 = 0.012;
 /// Travel between two readings of the tension, m.
 pub(super) const STEP_M: f32 = 1e-3;
 
-/// How often a step is paid out at the most until the tendon is slack.
-pub(super) const PAY_OUT_STEPS: u32 = 10;
-
 /// Travels of the jogs, m: a shorter one does not come up to speed.
 pub(super) const TRAVEL_MIN_M: f32 = 4e-4;
 const TRAVEL_MAX_M: f32 = 4e-3;
 
 /// Travel of a jog against a tension, m.
 pub(super) const LOADED_TRAVEL_M: f32 = 2e-3;
+
+/// How far a tendon is paid out at the most until it is slack, m: as far as a measurement that was stopped may have reeled it in.
+pub(super) const PAY_OUT_MAX_M: f32 = REEL_MAX_M + LOADED_TRAVEL_M;
 
 /// Slowest jog, m/s: a screw sticks and slips where it is slower.
 const SLOWEST_M_PER_S: f32 = 8e-4;
@@ -132,7 +132,7 @@ impl JogPlan {
     /// How far the tendon is paid out and reeled in at the most beside where it began, m.
     #[must_use]
     pub fn reach_m(&self) -> [f32; 2] {
-        let out_m = PAY_OUT_STEPS as f32 * STEP_M + self.travel_m + self.servo.travel_m();
+        let out_m = PAY_OUT_MAX_M + self.travel_m + self.servo.travel_m();
         [out_m, REEL_MAX_M + LOADED_TRAVEL_M]
     }
 }

@@ -1,10 +1,10 @@
 //! The jogs of one motor: without a tension and against one, both ways, at several voltages.
 
 use super::error::{LegError, TuneError};
-use super::jog_plan::{JogPlan, LOADED_TRAVEL_M, PAY_OUT_STEPS, REEL_MAX_M, STEP_M, TRAVEL_MIN_M};
+use super::jog_plan::{JogPlan, LOADED_TRAVEL_M, PAY_OUT_MAX_M, REEL_MAX_M, STEP_M, TRAVEL_MIN_M};
 use super::servo::{MeasuredServo, ServoJogs, point};
 use super::tuned_leg::TunedLeg;
-use leg_base::jog_report::{Finding, findings};
+use leg_base::jog_report::{Finding, end_finding, tension_finding};
 use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogDrive, JogEnd, JogReport, ServoResponse};
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
@@ -56,6 +56,7 @@ pub(super) async fn jog_all<L: TunedLeg>(
         settings,
         pulled_m: 0.0,
         turned: false,
+        slack_n: [0.0; 3],
         all: Vec::new(),
         servo: ServoJogs::default(),
         servo_finding: None,
@@ -113,6 +114,8 @@ struct Jogs<'a, L> {
     pulled_m: f32,
     /// Whether the last jog turned the motor as it was driven.
     turned: bool,
+    /// The tensions with this tendon slack, N.
+    slack_n: [f32; 3],
     all: Vec<Jogged>,
     servo: ServoJogs,
     /// What ended a jog by the servo.
@@ -142,12 +145,17 @@ impl<L: TunedLeg> Jogs<'_, L> {
         }
     }
 
-    /// Pays the tendon out until its tension stays, and then by the longest jog, so that none of the free ones makes it pull.
+    /// Pays the tendon out until its tension stays, in a step and in the longest jog after it: one that holds up the leg alone, far
+    /// aside, changes by less than a slack one's noise in a step. None of the free jogs makes it pull then.
     async fn slacken(&mut self) -> Result<(), TuneError<L::Error>> {
-        for _ in 0..PAY_OUT_STEPS {
-            let report = self.jog(-STEP_M, self.plan.slow()).await?;
-            if self.change_n(&report).abs() < SLACK_CHANGE_N {
-                self.jog(-self.plan.travel_m, self.plan.slow()).await?;
+        while STEP_M - self.pulled_m <= PAY_OUT_MAX_M {
+            let step = self.jog(-STEP_M, self.plan.slow()).await?;
+            if self.change_n(&step).abs() >= SLACK_CHANGE_N {
+                continue;
+            }
+            let longest = self.jog(-self.plan.travel_m, self.plan.slow()).await?;
+            if self.change_n(&longest).abs() < SLACK_CHANGE_N {
+                [_, self.slack_n] = longest.tensions_n;
                 return Ok(());
             }
         }
@@ -250,6 +258,7 @@ impl<L: TunedLeg> Jogs<'_, L> {
         let slack_n = free.sum::<f64>() / self.all.len().max(1) as f64;
         while self.pulled_m + STEP_M <= REEL_MAX_M {
             let report = self.jog(STEP_M, self.plan.slow()).await?;
+            self.require_own_cell(&report)?;
             let pull_n = f64::from(self.own(&report.tensions_n[1])) - slack_n;
             if pull_n >= f64::from(LOADED_PART * self.plan.tension_max_n) {
                 return Ok(());
@@ -263,6 +272,20 @@ impl<L: TunedLeg> Jogs<'_, L> {
             ),
             "reel the tendons in until they hardly sag, with `leg jog`, and see that each load cell is that of its tendon",
         ))
+    }
+
+    /// Refuses a load cell that shows another tendon's tension, or the negative one, by what has changed since the tendon was slack: a
+    /// jog alone changes it by less than the swing of a leg does.
+    fn require_own_cell(&self, report: &JogReport<f32>) -> Result<(), TuneError<L::Error>> {
+        let [_, now_n] = report.tensions_n;
+        let since_slack = JogReport {
+            tensions_n: [self.slack_n, now_n],
+            ..*report
+        };
+        match tension_finding(&since_slack) {
+            Some(finding) => Err(TuneError::Finding(finding)),
+            None => Ok(()),
+        }
     }
 
     /// Turns back to where it began.
@@ -300,7 +323,7 @@ impl<L: TunedLeg> Jogs<'_, L> {
         self.turned = matches!(report.end, JogEnd::Arrived | JogEnd::Tension(_));
         // To come to pull is what some of them are for.
         let pulls = report.end == JogEnd::Tension(self.plan.motor) && travel_m > 0.0;
-        match findings(&report, self.settings).into_iter().next() {
+        match end_finding(&report, self.settings) {
             Some(finding) if !pulls => {
                 let finding = self.placed(finding, &demand);
                 let by_servo = !matches!(drive, JogDrive::Voltage(_));

@@ -25,6 +25,10 @@ fn a_mistake_of_the_wires_is_named_and_ends_it() {
             Defect::CellReversed(0),
             "shows less where its tendon pulls more",
         ),
+        (
+            Defect::CellsSwapped,
+            "load cell 2 shows what tendon 1 pulls",
+        ),
         (Defect::TendonCut(0), "does not come to pull"),
     ] {
         let (line, mut operator, _) = leg(&rig, &rig, 1);
