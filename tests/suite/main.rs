@@ -139,6 +139,7 @@ mod host {
     mod monitor_screen;
     mod plot;
     mod protocol_page;
+    mod slow_settings;
     mod telemetry_page;
     pub mod tune;
     mod ui;

@@ -21,6 +21,7 @@ pub mod failure;
 pub mod flat_json;
 pub mod jog_report;
 pub mod json_line;
+pub mod longest_times;
 pub mod numeric;
 pub mod paths;
 pub mod recorder_rows;

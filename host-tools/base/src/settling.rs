@@ -15,6 +15,10 @@ const SETTLED_N: f32 = 2.0;
 /// Change from one telemetry to the next below which pretension and stiffness are settled, as a part of each.
 const SETTLED_PART: f32 = 1e-3;
 
+/// Change of the pretension over the whole of that time below which it is settled, N: at the lowest rate that a setting gives it is 0.03 N. At rest it
+/// does not change, but where a limit moves with the estimated load.
+const RAMPED_N: f32 = 0.02;
+
 /// Distance of two directions below which they are the same: 0.03°.
 const SAME_DIRECTION: f32 = 5e-4;
 
@@ -22,8 +26,8 @@ const SAME_DIRECTION: f32 = 5e-4;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Settling {
     last: Option<Telemetry<f32>>,
-    /// Since which tick it is settled, and where it was then.
-    since: Option<(u32, [f32; 2])>,
+    /// Since when it is settled, and where it was then.
+    since: Option<Telemetry<f32>>,
     /// Whether the leg leaves its load out: it does not come to its target, but to rest.
     uncompensated: bool,
 }
@@ -48,18 +52,20 @@ impl Settling {
         }
         self.last = Some(*telemetry);
         let there = if self.uncompensated {
-            let rests = |(_, pose)| same_direction(&pose, &telemetry.pose);
+            let rests = |since: Telemetry<f32>| same_direction(&since.pose, &telemetry.pose);
             self.since.is_none_or(rests)
         } else {
             same_direction(&telemetry.pose, &telemetry.target)
                 && taut(&telemetry.tensions_n, &telemetry.target_tensions_n)
         };
-        if !there || !before.is_some_and(|before| steady(&before, telemetry)) {
+        let steady = before.is_some_and(|before| steady(&before, telemetry));
+        let ramps = self.since.is_some_and(|since| ramps(&since, telemetry));
+        if !there || !steady || ramps {
             self.since = None;
             return false;
         }
-        let (since, _) = *self.since.get_or_insert((tick, telemetry.pose));
-        tick.wrapping_sub(since) >= SETTLED_TICKS
+        let since = *self.since.get_or_insert(*telemetry);
+        tick.wrapping_sub(since.tick) >= SETTLED_TICKS
     }
 }
 
@@ -70,6 +76,11 @@ fn steady(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
     !now.moving
         && steady(|telemetry| telemetry.pretension_n)
         && steady(|telemetry| telemetry.stiffness_nm_per_rad)
+}
+
+/// Whether the pretension goes on to where it shall be, however slowly.
+fn ramps(since: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
+    !now.faults.limits().any() && (now.pretension_n - since.pretension_n).abs() > RAMPED_N
 }
 
 /// Whether two directions, as horizontal components, are the same.

@@ -1,6 +1,6 @@
 //! Streaming a path to the leg as set-points.
 
-use super::motion::{is_overtaken, not_following, unlimited};
+use super::motion::{MOVE, is_overtaken, not_following, unlimited};
 use super::{Operator, OperatorError};
 use crate::path_reader::{PathSource, PathStep};
 use leg_base::failure::Failure;
@@ -21,9 +21,6 @@ const WAIT_TIME: Duration = Duration::from_millis(5);
 
 /// Such waits after which it is looked at what the leg does.
 const WAITS: u32 = 20;
-
-/// Longest way to rest after the last point.
-const REST_TIME: Duration = Duration::from_secs(60);
 
 /// A stream that is being sent.
 struct Sending {
@@ -96,8 +93,7 @@ impl Operator {
             if let Some(last) = sending.held_back {
                 operator.send_point(&last, begins, StreamPart::Last)?;
             }
-            let telemetry =
-                operator.poll_followed(ASKED, REST_TIME, |telemetry| !telemetry.moving)?;
+            let telemetry = operator.poll_followed(ASKED, &MOVE, |telemetry| !telemetry.moving)?;
             sent?;
             unlimited(ASKED, &telemetry)?;
             operator.settle(ASKED)

@@ -1,19 +1,25 @@
 //! Homing and moving the leg, and leaving it to itself or in hold.
 
 use super::command::name;
+use super::telemetry::POLL_TIME;
 use super::{Goal, Operator, OperatorError};
+use leg_base::longest_times::{USUAL_HOMING, USUAL_MOVE, longest_homing, longest_move};
 use leg_base::settling::{Settling, same_direction};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
+use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
-/// Longest homing.
-const HOMING_TIME: Duration = Duration::from_secs(120);
+/// How long a leg that another host has relax, or that starts, may stand still before it is waited for no longer.
+const STILL_TIME: Duration = Duration::from_secs(60);
 
-/// Longest move with all that belongs to it.
-const MOVE_TIME: Duration = Duration::from_secs(60);
+/// How long something is waited for: usually, and at the most by the settings of the leg.
+type Longest = (Duration, fn(&Settings) -> Duration);
+
+const HOMING: Longest = (USUAL_HOMING, longest_homing);
+pub(super) const MOVE: Longest = (USUAL_MOVE, longest_move);
 
 impl Operator {
     /// Does `work` with keep-alives, and leaves the leg in hold however that ends. A leg that obeyed nothing
@@ -69,9 +75,7 @@ impl Operator {
         }
         self.drive(|operator| {
             operator.command(Command::Home)?;
-            operator.poll_followed(asked, HOMING_TIME, |telemetry| {
-                telemetry.state == State::Active
-            })?;
+            operator.poll_followed(asked, &HOMING, |telemetry| telemetry.state == State::Active)?;
             operator.settle(asked)
         })
     }
@@ -119,7 +123,7 @@ impl Operator {
 
     /// Waits while the leg starts or relaxes; refuses a leg with a fault.
     pub(super) fn settle_state(&mut self, asked: &'static str) -> Result<(), OperatorError> {
-        let telemetry = self.wait_until("come to rest", MOVE_TIME, |telemetry| {
+        let telemetry = self.wait_while_moving("come to rest", STILL_TIME, |telemetry| {
             !matches!(telemetry.state, State::Boot | State::RampingDown)
         })?;
         let faults = telemetry.faults.stopping();
@@ -152,28 +156,39 @@ impl Operator {
     /// Waits until an armed leg is where it shall be, and stays so.
     pub(super) fn settle(&mut self, asked: &'static str) -> Result<Telemetry<f32>, OperatorError> {
         let mut settling = Settling::default();
-        self.poll_followed(asked, MOVE_TIME, |telemetry| settling.take(telemetry))
+        self.poll_followed(asked, &MOVE, |telemetry| settling.take(telemetry))
     }
 
-    /// Polls a leg that follows commands until `done` says so; what else it may come to is an error.
+    /// Polls a leg that follows commands until `done` says so; what else it may come to is an error. How long it may take by its settings is
+    /// asked where it takes longer than usual.
     pub(super) fn poll_followed(
         &mut self,
         asked: &'static str,
-        timeout: Duration,
+        (usual, longest): &Longest,
         mut done: impl FnMut(&Telemetry<f32>) -> bool,
     ) -> Result<Telemetry<f32>, OperatorError> {
-        let until = self.now() + timeout;
-        self.poll(asked, timeout, |now, telemetry| {
+        let begun = self.now();
+        let mut limit = *usual;
+        loop {
+            let telemetry = self.telemetry()?.telemetry;
             if !telemetry.state.follows() {
-                return Err(not_following(asked, telemetry));
+                return Err(not_following(asked, &telemetry));
             }
-            let done = done(telemetry);
-            if !done && now >= until {
-                // What limits the leg is why it does not arrive.
-                unlimited(asked, telemetry)?;
+            if done(&telemetry) {
+                return Ok(telemetry);
             }
-            Ok(done)
-        })
+            if self.now() >= begun + limit {
+                let needed = longest(&self.settings()?);
+                if needed <= limit {
+                    // What limits the leg is why it does not arrive.
+                    unlimited(asked, &telemetry)?;
+                    let telemetry = Box::new(telemetry);
+                    return Err(OperatorError::TimedOut(asked, limit, telemetry));
+                }
+                limit = needed;
+            }
+            self.pause(POLL_TIME)?;
+        }
     }
 }
 

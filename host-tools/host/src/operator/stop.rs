@@ -111,19 +111,31 @@ impl Operator {
     pub fn disarm(&mut self) -> Result<(), OperatorError> {
         self.command(Command::Disarm)?;
         self.drives = false;
+        self.wait_while_moving("relax", STILL_TIME, |telemetry| {
+            matches!(telemetry.state, State::Disarmed | State::Off)
+        })?;
+        Ok(())
+    }
+
+    /// Waits until `done` says so, as long as motors move, and `still` longer.
+    pub(super) fn wait_while_moving(
+        &mut self,
+        asked: &'static str,
+        still: Duration,
+        done: impl Fn(&Telemetry<f32>) -> bool,
+    ) -> Result<Telemetry<f32>, OperatorError> {
         let mut moved = (self.now(), [f32::MAX; 3]);
-        self.poll("relax", LONGEST_TIME, |now, telemetry| {
+        self.poll(asked, LONGEST_TIME, |now, telemetry| {
             let pulled_m = telemetry.pulled_m;
             let mut pairs = pulled_m.iter().zip(&moved.1);
             if pairs.any(|(pulled, before)| (pulled - before).abs() > STILL_M) {
                 moved = (now, pulled_m);
-            } else if now > moved.0 + STILL_TIME {
+            } else if now > moved.0 + still {
                 let telemetry = Box::new(*telemetry);
-                return Err(OperatorError::TimedOut("relax", STILL_TIME, telemetry));
+                return Err(OperatorError::TimedOut(asked, still, telemetry));
             }
-            Ok(matches!(telemetry.state, State::Disarmed | State::Off))
-        })?;
-        Ok(())
+            Ok(done(telemetry))
+        })
     }
 
     /// Clears the faults whose cause is gone, and leaves the leg in hold if it was held. One that keeps station has none, and goes on.

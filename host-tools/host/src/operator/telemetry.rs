@@ -8,7 +8,7 @@ use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
 /// How often telemetry is asked for while the leg does something.
-const POLL_TIME: Duration = Duration::from_millis(20);
+pub(super) const POLL_TIME: Duration = Duration::from_millis(20);
 
 impl TelemetryStream {
     /// Keeps telemetry that came while something else was waited for.

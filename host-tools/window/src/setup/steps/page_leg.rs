@@ -2,10 +2,12 @@
 
 use leg_base::description;
 use leg_base::failure::Failure;
+use leg_base::longest_times::{longest_homing, longest_move};
 use leg_base::settling::{Settling, same_direction};
 use leg_firmware::command::Command;
 use leg_firmware::jog::{JogDemand, JogReport};
 use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::tune::{LegError, TunedLeg};
@@ -18,8 +20,6 @@ use std::time::Duration;
 /// The longest times that things take, s of the leg.
 const RELAXING_S: f64 = 30.0;
 const JOG_S: f64 = 120.0;
-const HOMING_S: f64 = 120.0;
-const MOVE_S: f64 = 60.0;
 const INTERRUPTED_S: f64 = 5.0;
 
 /// What a page asks a leg.
@@ -108,15 +108,28 @@ impl LegError for PageError {
 }
 
 /// The leg.
-pub(super) struct PageLeg(pub Rc<RefCell<Mailbox>>);
+pub(super) struct PageLeg {
+    mailbox: Rc<RefCell<Mailbox>>,
+    /// Longest homing and move by its settings, s.
+    homing_s: f64,
+    move_s: f64,
+}
 
 type Result<T> = std::result::Result<T, PageError>;
 
 impl PageLeg {
+    pub(super) fn new(mailbox: Rc<RefCell<Mailbox>>, settings: &Settings) -> Self {
+        Self {
+            mailbox,
+            homing_s: longest_homing(settings).as_secs_f64(),
+            move_s: longest_move(settings).as_secs_f64(),
+        }
+    }
+
     /// What it reports next.
     async fn report(&self) -> Result<Telemetry<f32>> {
         poll_fn(|_| {
-            let mut mailbox = self.0.borrow_mut();
+            let mut mailbox = self.mailbox.borrow_mut();
             if let Some(words) = &mailbox.failure {
                 return Poll::Ready(Err(PageError::Lost(words.clone())));
             }
@@ -127,14 +140,14 @@ impl PageLeg {
     }
 
     fn wish(&self, wish: LegRequest) {
-        self.0.borrow_mut().wishes.push(wish);
+        self.mailbox.borrow_mut().wishes.push(wish);
     }
 
     async fn command(&self, command: Command, name: &'static str) -> Result<()> {
         self.wish(LegRequest::Command(command, name));
         loop {
             self.report().await?;
-            let mailbox = self.0.borrow();
+            let mailbox = self.mailbox.borrow();
             if mailbox.answered {
                 let refusal = mailbox.refusal.clone();
                 return refusal.map_or(Ok(()), |words| Err(PageError::Refused(words)));
@@ -179,7 +192,7 @@ impl PageLeg {
 
     async fn settle(&self, asked: &'static str) -> Result<Telemetry<f32>> {
         let mut settling = Settling::default();
-        self.follow(asked, MOVE_S, |report| settling.take(report))
+        self.follow(asked, self.move_s, |report| settling.take(report))
             .await
     }
 
@@ -241,11 +254,11 @@ impl TunedLeg for PageLeg {
         let rests = |report: &Telemetry<f32>| Ok(report.state != State::Jogging);
         let telemetry = self.wait(asked, JOG_S, rests).await?;
         // What an earlier jog saw is not asked for.
-        self.0.borrow_mut().jog = None;
+        self.mailbox.borrow_mut().jog = None;
         loop {
             self.wish(LegRequest::JogReport);
             self.report().await?;
-            if let Some(report) = self.0.borrow_mut().jog.take() {
+            if let Some(report) = self.mailbox.borrow_mut().jog.take() {
                 return Ok((report, telemetry));
             }
         }
@@ -261,7 +274,7 @@ impl TunedLeg for PageLeg {
             self.wait(asked, RELAXING_S, off).await?;
         }
         self.command(Command::Home, "home").await?;
-        self.follow(asked, HOMING_S, |report| report.state == State::Active)
+        self.follow(asked, self.homing_s, |report| report.state == State::Active)
             .await?;
         self.settle(asked).await?;
         self.stop().await

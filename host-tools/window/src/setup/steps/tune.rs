@@ -134,7 +134,7 @@ impl Tune {
         self.mailbox = Rc::default();
         self.seen = Rc::default();
         self.tick = None;
-        let page_leg = PageLeg(self.mailbox.clone());
+        let page_leg = PageLeg::new(self.mailbox.clone(), &settings(leg.rig()));
         let work = measure(page_leg, jogs, swing, *leg.rig(), self.seen.clone());
         self.work = Some(Work(Box::pin(work)));
         self.step = TuneStep::Measuring;
