@@ -310,6 +310,8 @@ impl<T: Scalar> Leg<T> {
             }
             (Mode::Active(active), None) if active.begins_taut() => return self.agreement.pause(),
             (Mode::Held(_), Some(_)) if self.agreement.watches() => &ErrorGrowth::STANDING,
+            // A tension beyond its curve, as of a wire that breaks for a moment: what was known stays.
+            (Mode::Held(_), None) if self.agreement.watches() => return self.agreement.pause(),
             _ => return self.agreement.end(),
         };
         if let Some(error) = error {

@@ -66,6 +66,9 @@ pub struct Settings {
     pub recorded: SignalSet,
 }
 
+/// Sine of the greatest tilt that a rig file may give, 60°, with its rounding.
+const TILT_MAX_SINE: f32 = 0.866_03;
+
 /// Why settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub enum SettingsError {
@@ -138,7 +141,7 @@ impl Settings {
         }
     }
 
-    /// Checks gains, limits and calibration. The mechanism is checked where it is built.
+    /// Checks gains, limits, the greatest tilt and calibration. The mechanism is checked where it is built.
     ///
     /// # Errors
     /// The first value that is refused.
@@ -150,6 +153,13 @@ impl Settings {
         OutOfRange::check(2, 0, Estimation::FIELDS, &self.estimation.values())?;
         OutOfRange::check(3, 0, Limits::FIELDS, &self.limits.values())?;
         OutOfRange::check(4, 0, Homing::FIELDS, &self.homing.values())?;
+        // Not where it is no number.
+        if !(self.tilt_max_sine > 0.0 && self.tilt_max_sine <= TILT_MAX_SINE) {
+            return Err(SettingsError::Model(Error::Refused {
+                quantity: Quantity::Tilt,
+                reason: Reason::OutOfRange,
+            }));
+        }
         let bounds = self.f_min_n..=self.f_max_n;
         // Bounds that are none are refused with the mechanism.
         if !bounds.is_empty() && !bounds.contains(&self.pretension_n) {

@@ -252,8 +252,13 @@ impl Session {
             };
             return match answer.result {
                 Ok(()) => {
-                    if let Command::Compensation(compensation) = command {
-                        self.compensated = *compensation != Compensation::Off;
+                    match command {
+                        Command::Compensation(compensation) => {
+                            self.compensated = *compensation != Compensation::Off;
+                        }
+                        // A leg that homes compensates.
+                        Command::Home => self.compensated = true,
+                        _ => {}
                     }
                     Ok(())
                 }

@@ -218,6 +218,8 @@ impl LiveLeg {
         self.refusal = None;
         match command {
             Command::Compensation(compensation) => self.compensation = Some(compensation),
+            // A leg that homes compensates.
+            Command::Home => self.compensation = Some(Compensation::Estimated),
             Command::Arm | Command::Clear | Command::Disarm | Command::Hold => {
                 self.commanded = None;
             }

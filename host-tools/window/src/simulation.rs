@@ -243,6 +243,8 @@ impl Simulation {
         self.refusal = None;
         match command {
             Command::Compensation(compensation) => self.compensation = compensation,
+            // A leg that homes compensates.
+            Command::Home => self.compensation = Compensation::Estimated,
             // The leg's target is where it is from now on, or there is none.
             Command::Arm | Command::Clear | Command::Disarm => self.leg.set_commanded(None),
             _ => {}

@@ -1,7 +1,7 @@
 //! A disarm: a leg that knows its pose is led down first, every other one is paid out where it is.
 
 use super::still_leg::StillLeg;
-use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::command::{Command, CommandRefusal, Compensation};
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::supervisor::{Fault, State};
 
@@ -16,7 +16,16 @@ fn a_leg_that_is_led_down_follows_no_other_command_but_a_stop() {
     let telemetry = still.leg.telemetry();
     assert!(telemetry.state == State::Active && telemetry.moving);
     let refused = Err(CommandRefusal::State(State::RampingDown));
-    for command in [Command::Move { x: 0.1, y: 0.0 }, Command::Hold] {
+    for command in [
+        Command::Move { x: 0.1, y: 0.0 },
+        Command::Hold,
+        Command::Pretension(100.0),
+        Command::Stiffness {
+            demand_nm_per_rad: 90.0,
+            towards: None,
+        },
+        Command::Compensation(Compensation::Off),
+    ] {
         assert_eq!(still.obey(command), refused, "{command:?}");
     }
     assert_eq!(still.obey(Command::Disarm), Ok(()));

@@ -85,6 +85,27 @@ fn a_leg_whose_sensors_disagree_has_to_home_once_it_was_paid_out() {
     assert!(!still.leg.telemetry().homed);
 }
 
+/// A wire that breaks for a moment: for as long as the cell shows more than the curve knows, there is no pose, and nothing is compared.
+#[test]
+fn a_leg_whose_sensors_disagree_is_not_cleared_after_a_tension_beyond_the_curve() {
+    let mut still = StillLeg::armed();
+    still.run(2_000);
+    for _ in 0..50 {
+        still.sensors.cell_codes[0] -= 30;
+        still.run(4);
+    }
+    still.run(400);
+    assert!(still.leg.telemetry().faults.has(Fault::Residual));
+    let code = core::mem::replace(&mut still.sensors.cell_codes[2], 65_000);
+    still.run(12);
+    still.sensors.cell_codes[2] = code;
+    still.run(400);
+    assert_eq!(still.obey(Command::Clear), Err(CommandRefusal::Faulted));
+    assert_eq!(still.leg.state(), State::Held);
+    assert_eq!(still.obey(Command::Disarm), Ok(()));
+    assert!(!still.leg.telemetry().homed);
+}
+
 /// An emergency stop ends what is compared as well: what had jumped before has to be homed all the same.
 #[test]
 fn a_leg_whose_tension_jumped_has_to_home_after_an_emergency_stop() {

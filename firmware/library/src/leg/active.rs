@@ -31,7 +31,7 @@ pub struct Active<T> {
     /// What was found in the last turn of the offsets: a station too far away, a swing that does not end.
     pub faults: FaultSet,
     /// Whether there is no target where it was sent: it stays.
-    without_target: bool,
+    pub without_target: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
     /// Whether the load stays as it is: where it was frozen, until the leg rests. On its way a push that came meanwhile would be taken for a payload

@@ -52,11 +52,10 @@ impl<T: Scalar> Leg<T> {
     fn execute(&mut self, command: Command, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         match command {
             Command::KeepAlive => Ok(()),
-            // A leg that keeps station is armed before it takes one of these.
             Command::Pretension(_) | Command::Stiffness { .. } | Command::Compensation(_)
-                if self.mode.state() == State::KeepingStation =>
+                if let Some(state) = self.mode.refuses_as() =>
             {
-                Err(CommandRefusal::State(State::KeepingStation))
+                Err(CommandRefusal::State(state))
             }
             Command::Arm if self.shared.zero_m.is_none() => Err(CommandRefusal::NotHomed),
             Command::Arm => self.start(Event::Arm, measured),
@@ -206,14 +205,11 @@ impl<T: Scalar> Leg<T> {
     /// The active mode, and what it works with; refused in every other.
     fn active(&mut self) -> Result<(&mut Active<T>, &mut Shared<T>), CommandRefusal> {
         let refusal = self.unfaulted().err();
+        if let Some(state) = self.mode.refuses_as() {
+            return Err(CommandRefusal::State(state));
+        }
         let state = self.mode.state();
         match &mut self.mode {
-            Mode::Active(active) if active.station.kept().is_some() => {
-                Err(CommandRefusal::State(state))
-            }
-            Mode::Active(active) if active.disarming => {
-                Err(CommandRefusal::State(State::RampingDown))
-            }
             Mode::Active(active) => Ok((active, &mut self.shared)),
             _ => Err(refusal.unwrap_or(CommandRefusal::State(state))),
         }
@@ -231,8 +227,7 @@ impl<T: Scalar> Leg<T> {
         if !pretension_n.is_finite() {
             return self.refuse(CommandRefusal::Number);
         }
-        let demand = PretensionDemand::Pretension(pretension_n.into());
-        self.shared.pretension.demand(demand);
+        self.demand(PretensionDemand::Pretension(pretension_n.into()));
         Ok(())
     }
 
@@ -249,9 +244,15 @@ impl<T: Scalar> Leg<T> {
             None => BendingAxis::Softest,
             Some(towards) => BendingAxis::Towards(towards.map(T::from)),
         };
-        let demand = PretensionDemand::Stiffness(demand_nm_per_rad.into(), axis);
-        self.shared.pretension.demand(demand);
+        self.demand(PretensionDemand::Stiffness(demand_nm_per_rad.into(), axis));
         Ok(())
+    }
+
+    /// Tenses the leg so. One that rests without a target still has none.
+    fn demand(&mut self, demand: PretensionDemand<T>) {
+        self.shared.pretension.demand(demand);
+        let active = self.mode.active();
+        self.shared.refused &= active.is_some_and(Active::rests_without_target);
     }
 
     /// A move inside the workspace; another is refused.

@@ -6,6 +6,7 @@ use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
 use super::station::{Station, StationKeeping};
+use crate::command::Compensation;
 use crate::control::{Axis, HaulLimit, HomingSequence, Measured, ZERO_READINGS};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
@@ -72,6 +73,16 @@ impl<T: Scalar> Mode<T> {
         match self {
             Self::Active(active) => Some(active),
             _ => None,
+        }
+    }
+
+    /// The state under which commands are refused that an active leg obeys: it keeps station, and is armed before it obeys, or it is led down.
+    pub fn refuses_as(&self) -> Option<State> {
+        let active = self.active()?;
+        if active.station.kept().is_some() {
+            Some(State::KeepingStation)
+        } else {
+            active.disarming.then_some(State::RampingDown)
         }
     }
 
@@ -180,6 +191,8 @@ impl<T: Scalar> Mode<T> {
             State::Disarmed => Self::Disarmed,
             State::Homing => {
                 shared.failed_tendon = 0;
+                // Whoever left the load out may not be there any more, and what the leg shows after homing is looked at.
+                shared.compensation = Compensation::Estimated;
                 let limits = &shared.limits;
                 Self::Homing(HomingSequence::new(
                     &limits.homing,

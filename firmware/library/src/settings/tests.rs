@@ -48,6 +48,23 @@ fn a_calibration_outside_its_range_is_refused_by_name() {
     }
 }
 
+/// A greatest tilt that is none would bound no move.
+#[test]
+fn a_greatest_tilt_beyond_60_degrees_is_refused() {
+    for sine in [f32::NAN, f32::INFINITY, -0.5, 0.0, 0.87, 1.5] {
+        let mut settings = Settings::table_1().unwrap();
+        settings.tilt_max_sine = sine;
+        let error = settings.check().unwrap_err().to_string();
+        assert_eq!(
+            error, "Tilt is beyond the range in which the model holds",
+            "{sine}"
+        );
+    }
+    let mut settings = Settings::table_1().unwrap();
+    settings.tilt_max_sine = 60.0_f32.to_radians().sin();
+    assert_eq!(settings.check(), Ok(()));
+}
+
 #[test]
 fn a_zero_beyond_every_length_is_refused() {
     for value in [f32::NAN, f32::INFINITY, -1e3, 1e3] {

@@ -5,7 +5,7 @@ use super::telemetry::POLL_TIME;
 use super::{Goal, Operator, OperatorError};
 use leg_base::longest_times::{USUAL_HOMING, USUAL_MOVE, longest_homing, longest_move};
 use leg_base::settling::{Settling, same_direction};
-use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::command::{Command, CommandRefusal, Compensation};
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
@@ -147,6 +147,8 @@ impl Operator {
             // Another host's, or not yet ended by its silence: the commands that follow show it.
             State::Active | State::Boot | State::RampingDown => return Ok(()),
         }
+        // Whoever left the load out may not be there any more.
+        self.command(Command::Compensation(Compensation::Estimated))?;
         if telemetry.state == State::Disarmed {
             self.settle(asked)?;
         }

@@ -74,8 +74,13 @@ impl<'a> TestStand<'a> {
 
     /// Sends a command.
     pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
-        if let Command::Compensation(compensation) = *command {
-            self.compensated = compensation != Compensation::Off;
+        match *command {
+            Command::Compensation(compensation) => {
+                self.compensated = compensation != Compensation::Off;
+            }
+            // A leg that homes compensates.
+            Command::Home => self.compensated = true,
+            _ => {}
         }
         let sent = self.leg.send(command).map(|_| ());
         sent.map_err(SimulationError::Command)

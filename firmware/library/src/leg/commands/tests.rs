@@ -300,3 +300,42 @@ fn a_leg_sets_out_for_the_workspace_alone() {
     );
     assert_eq!((went, leg.shared.refused), (Ok(()), false));
 }
+
+/// What was refused is told until a command is accepted, a pretension or a stiffness, too; not that a leg has no target.
+#[test]
+fn a_pretension_that_is_accepted_ends_what_was_refused() {
+    let stiffness = |demand_nm_per_rad| Command::Stiffness {
+        demand_nm_per_rad,
+        towards: None,
+    };
+    for command in [Command::Pretension(60.0), stiffness(90.0)] {
+        for (without_target, refused) in [(false, false), (true, true)] {
+            let mut leg = armed();
+            let impossible = leg.execute(stiffness(-1.0), &MEASURED);
+            assert_eq!(impossible, Err(CommandRefusal::Number));
+            assert!(leg.shared.refused);
+            if let Mode::Active(active) = &mut leg.mode {
+                active.without_target = without_target;
+            }
+            assert_eq!(leg.execute(command, &MEASURED), Ok(()));
+            assert_eq!(leg.shared.refused, refused, "{command:?}");
+        }
+    }
+}
+
+/// Somebody left the load out, and is not there any more: a leg that homes compensates, so that what it shows then is looked at.
+#[test]
+fn a_homing_ends_that_the_load_is_left_out() {
+    for compensation in [Compensation::Off, Compensation::Frozen] {
+        let mut leg = armed();
+        leg.mode = Mode::Disarmed;
+        assert_eq!(
+            leg.execute(Command::Compensation(compensation), &MEASURED),
+            Ok(())
+        );
+        assert_eq!(leg.shared.compensation, compensation);
+        assert_eq!(leg.execute(Command::Home, &MEASURED), Ok(()));
+        assert_eq!(leg.mode.state(), State::Homing);
+        assert_eq!(leg.shared.compensation, Compensation::Estimated);
+    }
+}
