@@ -5,6 +5,7 @@ use leg_base::description::{causes, faults, hex, remedies, state};
 use leg_base::failure::Failure;
 use leg_base::refusal;
 use leg_base::settling::same_direction;
+use leg_firmware::command::CommandRefusal;
 use leg_firmware::frame::FrameError;
 use leg_firmware::host_link::{HOST_SCHEMA, HostRefusal};
 use leg_firmware::set_point::PointRefusal;
@@ -88,6 +89,12 @@ impl OperatorError {
                 ),
                 refusal::OTHER_SOURCES,
             ),
+            // It had begun, as a path whose next point the stop came before.
+            Self::Refused(asked, HostRefusal::Command(CommandRefusal::Superseded)) => {
+                let superseded = HostRefusal::Command(CommandRefusal::Superseded);
+                let [reason, remedy] = refusal::description(&superseded);
+                Failure::failed(format!("the leg did not {asked}: {reason}"), remedy)
+            }
             Self::Refused(asked, refusal) => {
                 let [reason, remedy] = refusal::description(refusal);
                 Failure::refused(format!("the leg does not {asked}: {reason}"), remedy)

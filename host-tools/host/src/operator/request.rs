@@ -35,6 +35,38 @@ fn ends(request: &HostRequest) -> bool {
     matches!(command, Command::Stop | Command::Disarm)
 }
 
+/// Whether a reply may be that of a request. Hosts that share a line hear each other's replies, whose numbers may be alike.
+const fn answers(request: &HostRequest, reply: &HostReply) -> bool {
+    match reply {
+        HostReply::Refused(_) => true,
+        HostReply::Done => matches!(
+            request,
+            HostRequest::Command { .. }
+                | HostRequest::Stream(_)
+                | HostRequest::SetSettings(_)
+                | HostRequest::SaveSettings
+                | HostRequest::Recorder(_)
+        ),
+        HostReply::Identified(_) => matches!(request, HostRequest::Identify(_)),
+        HostReply::Telemetry(_) => matches!(request, HostRequest::Telemetry),
+        HostReply::Sensors(_) => matches!(request, HostRequest::Sensors),
+        HostReply::Settings(_) => matches!(request, HostRequest::GetSettings),
+        HostReply::Jog(_) => matches!(request, HostRequest::JogReport),
+        HostReply::Recorder(_) => matches!(request, HostRequest::Recorder(_)),
+    }
+}
+
+/// What came as the answer to a request.
+#[derive(Debug, Default)]
+pub(super) struct Answer {
+    /// The reply; none if none came in time.
+    pub reply: Option<HostReply>,
+    /// Whether the leg could not read a frame meanwhile.
+    lost: bool,
+    /// Whether a reply of another kind had its number.
+    other_kind: bool,
+}
+
 /// The reply to a request that has nothing to report.
 pub(super) fn done(reply: HostReply) -> Option<()> {
     matches!(reply, HostReply::Done).then_some(())
@@ -61,7 +93,7 @@ impl Operator {
         reply_time: Duration,
     ) -> Result<HostReply, OperatorError> {
         let mut numbers = Vec::new();
-        let mut busy = false;
+        let (mut busy, mut other_kind) = (false, false);
         for attempt in 0..ATTEMPTS {
             if attempt == ATTEMPTS_LATE && !busy {
                 let error = OperatorError::NoAnswer(self.name().into());
@@ -69,47 +101,54 @@ impl Operator {
             }
             numbers.push(self.connection.send(request)?);
             let until = self.now() + reply_time;
-            let (reply, lost) = self.reply(&numbers, ends(request), until)?;
-            busy = reply == Some(HostReply::Refused(HostRefusal::Busy));
-            match reply {
+            let answer = self.answer(&numbers, request, until)?;
+            other_kind |= answer.other_kind;
+            busy = answer.reply == Some(HostReply::Refused(HostRefusal::Busy));
+            match answer.reply {
                 Some(_) if busy => self.pause(BUSY_TIME)?,
                 Some(HostReply::Refused(refusal)) => {
                     return Err(self.connection.refused(asked, refusal));
                 }
                 Some(reply) => return Ok(reply),
-                None if repeat == Repeat::Always || lost => {}
+                None if repeat == Repeat::Always || answer.lost => {}
                 None => return Err(OperatorError::Unacknowledged(asked)),
             }
         }
         Err(if busy {
             self.connection.refused(asked, HostRefusal::Busy)
+        } else if other_kind {
+            OperatorError::WrongReply(asked)
         } else {
             OperatorError::NoAnswer(self.name().into())
         })
     }
 
-    /// The reply to one of these requests, which are the same one, and whether the leg could not read a frame meanwhile. One that `ends` what
-    /// the leg does, a stop or a disarm, supersedes its earlier copies: what is said of those is no reply.
-    pub(super) fn reply(
+    /// The answer to one of the requests with these numbers, which are the same one. One that ends what the leg does, a stop or a disarm, supersedes
+    /// its earlier copies: what is said of those is no answer.
+    pub(super) fn answer(
         &mut self,
         numbers: &[u16],
-        ends: bool,
+        request: &HostRequest,
         until: Duration,
-    ) -> Result<(Option<HostReply>, bool), OperatorError> {
-        let mut lost = false;
+    ) -> Result<Answer, OperatorError> {
+        let mut answer = Answer::default();
         while let Some((number, reply)) = self.next_reply(until)? {
             if numbers.contains(&number) {
                 let superseded =
                     HostReply::Refused(HostRefusal::Command(CommandRefusal::Superseded));
-                if ends && reply == superseded && numbers.last() != Some(&number) {
+                if ends(request) && reply == superseded && numbers.last() != Some(&number) {
                     continue;
                 }
-                return Ok((Some(reply), lost));
+                if answers(request, &reply) {
+                    answer.reply = Some(reply);
+                    return Ok(answer);
+                }
+                answer.other_kind = true;
             }
             let bad_frame = matches!(reply, HostReply::Refused(HostRefusal::BadFrame(_)));
-            lost |= number == 0 && bad_frame;
+            answer.lost |= number == 0 && bad_frame;
         }
-        Ok((None, lost))
+        Ok(answer)
     }
 
     /// The next message that is no telemetry; none if none came in time. Sends keep-alives meanwhile.

@@ -5,6 +5,7 @@ use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRefusal, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
+use std::io;
 use std::time::Duration;
 
 /// Wait for the answer to a stop before it is repeated.
@@ -73,8 +74,14 @@ impl Operator {
                 told = self.now();
                 (self.late_watcher)(&error);
             }
-            numbers.push(self.connection.send_urgent(&request)?);
-            if self.stop_acknowledged(&numbers)? {
+            match self.connection.send_urgent(&request) {
+                Ok(number) => numbers.push(number),
+                // A bus on which nobody acknowledges takes no frame: a board that starts takes the next.
+                Err(OperatorError::ConnectionLost(_, source))
+                    if source.kind() == io::ErrorKind::TimedOut => {}
+                Err(error) => return Err(error),
+            }
+            if self.stop_acknowledged(&numbers, &request)? {
                 return Ok(());
             }
         }
@@ -82,9 +89,13 @@ impl Operator {
     }
 
     /// Whether one of these stops is acknowledged before it is time for the next.
-    fn stop_acknowledged(&mut self, numbers: &[u16]) -> Result<bool, OperatorError> {
+    fn stop_acknowledged(
+        &mut self,
+        numbers: &[u16],
+        request: &HostRequest,
+    ) -> Result<bool, OperatorError> {
         let until = self.now() + STOP_TIME;
-        while let Some(reply) = self.reply(numbers, true, until)?.0 {
+        while let Some(reply) = self.answer(numbers, request, until)?.reply {
             match reply {
                 // Where the state does not allow it, the leg ramps down or starts: nothing of it follows commands.
                 HostReply::Done

@@ -22,7 +22,7 @@ use crate::operator::{Goal, HostIdentity, Operator, OperatorError, Tensioning};
 use crate::transport::Transport;
 use crate::transport::emulated::{EmulatedLine, EmulatedTransport};
 use leg_base::failure::Failure;
-use leg_firmware::command::Command;
+use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::rig_file::RigFile;
@@ -150,5 +150,20 @@ impl Transport for BadLine {
 
     fn now(&self) -> Duration {
         self.inner.now()
+    }
+}
+
+/// Somebody has left its load out, and it would be held in the place of keeping station.
+#[test]
+fn a_leg_that_is_moved_compensates_again() {
+    let leg = hanging_leg();
+    let mut operator = host(&leg, 1);
+    for tilt_deg in [5.0, 10.0] {
+        let left_out = Command::Compensation(Compensation::Off);
+        operator.command(Command::Arm).unwrap();
+        operator.command(left_out).unwrap();
+        operator.stop().unwrap();
+        operator.reach(&lean(tilt_deg)).unwrap();
+        assert_eq!(telemetry(&mut operator).state, State::KeepingStation);
     }
 }

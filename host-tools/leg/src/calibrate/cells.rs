@@ -41,9 +41,11 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     }
     let mut connection = args.leg.open(Purpose::Calibrate, options)?;
     require_drivers_off(&mut connection.operator, "let weights be hung on its cells")?;
-    let mut settings = connection.operator.settings()?;
-    let weighings = weigh(args, &mut connection, &settings)?;
+    let gravity_m_per_s2 = connection.operator.settings()?.rig.gravity_m_per_s2;
+    let weighings = weigh(args, &mut connection, gravity_m_per_s2)?;
     let fit = fit(&weighings)?;
+    // Another host may have set something else meanwhile: that stays.
+    let mut settings = connection.operator.settings()?;
     let axis = &mut settings.axes[usize::from(args.cell) - 1];
     axis.cell_n_per_code = fit.n_per_code as f32;
     axis.cell_zero_code = fit.zero_code as f32;
@@ -75,10 +77,10 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 fn weigh(
     args: &Args,
     connection: &mut LegConnection,
-    settings: &Settings,
+    gravity_m_per_s2: f32,
 ) -> Result<Vec<KnownWeight>, Failure> {
     let (number, cell) = (args.cell, usize::from(args.cell) - 1);
-    let gravity = f64::from(settings.rig.gravity_m_per_s2);
+    let gravity = f64::from(gravity_m_per_s2);
     let mut weighings = Vec::new();
     for kg in &args.weights {
         let newtons = kg * gravity;

@@ -81,8 +81,7 @@ pub(super) fn cell(
         return Err(refused(too_few_weights()));
     }
     require_off(leg, py, "let weights be hung on its cells")?;
-    let mut found = leg.ask(py, Operator::settings)?;
-    let gravity = f64::from(found.rig.gravity_m_per_s2);
+    let gravity = f64::from(leg.ask(py, Operator::settings)?.rig.gravity_m_per_s2);
     let mut weighings = Vec::new();
     for kg in weights_kg {
         hang.call1((kg,))?;
@@ -94,6 +93,8 @@ pub(super) fn cell(
     fit.require_straight(axis as u8 + 1, &weighings)
         .map_err(refused)?;
     if keep.set {
+        // Another host may have set something else meanwhile: that stays.
+        let mut found = leg.ask(py, Operator::settings)?;
         found.axes[axis].cell_n_per_code = fit.n_per_code as f32;
         found.axes[axis].cell_zero_code = fit.zero_code as f32;
         let found = found.unhomed();

@@ -52,22 +52,40 @@ pub(super) fn read_elongation_factor(section: &Section<'_>) -> Result<f64, TomlE
     Ok(factor)
 }
 
+/// The curves of three tendons that differ.
+const CURVES: [&str; 3] = ["curve_1", "curve_2", "curve_3"];
+
+/// What cannot stand beside each other: one of the two would not count.
+const EXCLUSIVE: [(&str, &str); 8] = [
+    ("stiffness_n_per_m", "curve"),
+    ("stiffness_n_per_m", CURVES[0]),
+    ("stiffness_n_per_m", CURVES[1]),
+    ("stiffness_n_per_m", CURVES[2]),
+    ("stiffness_n_per_m", "test_piece"),
+    ("curve", CURVES[0]),
+    ("curve", CURVES[1]),
+    ("curve", CURVES[2]),
+];
+
 /// The three tendons: of one constant stiffness, with one curve, or with a curve each.
 pub(super) fn read(
     section: &Section<'_>,
     elongation_factor: f64,
 ) -> Result<[Tendon<f64>; 3], TomlError> {
-    let one = |key| curve(section, key, elongation_factor);
-    let curve_key = ["curve", "curve_1"]
-        .into_iter()
-        .find(|key| section.has(key));
-    match curve_key {
-        Some(key) if section.has("stiffness_n_per_m") => {
-            Err(conflict(section.span(), "stiffness_n_per_m", key))
+    for (first, second) in EXCLUSIVE {
+        if section.has(first) && section.has(second) {
+            let span = section.place(&[second]).unwrap_or(section.span());
+            return Err(conflict(span, first, second));
         }
-        Some("curve_1") => Ok([one("curve_1")?, one("curve_2")?, one("curve_3")?]),
-        Some(_) => Ok([one("curve")?; 3]),
-        None => Ok([constant(section, elongation_factor)?; 3]),
+    }
+    let one = |key| curve(section, key, elongation_factor);
+    if section.has("curve") {
+        Ok([one("curve")?; 3])
+    } else if CURVES.iter().any(|key| section.has(key)) {
+        let [first, second, third] = CURVES.map(one);
+        Ok([first?, second?, third?])
+    } else {
+        Ok([constant(section, elongation_factor)?; 3])
     }
 }
 
@@ -242,6 +260,28 @@ mod tests {
         let [first, second, third] = file.tendons;
         assert_eq!(first, third);
         assert!(first.elongation(220.0).is_err() && second.elongation(220.0).is_ok());
+    }
+
+    /// One of two sections would not count, and its keys not be looked at.
+    #[test]
+    fn what_would_not_count_is_refused_by_name() {
+        let text = READY_RIGS[0].text;
+        let start = text.find("[tendon.curve]").unwrap();
+        let end = text.find("[workspace]").unwrap();
+        let constant = text[..start].replace("[tendon]\n", "[tendon]\nstiffness_n_per_m = 2e5\n");
+        for (first, tendon) in [("curve", &text[..end]), ("stiffness_n_per_m", &constant)] {
+            for second in ["curve_1", "curve_2", "curve_3", "test_piece"] {
+                // A test piece is that of a curve.
+                if (first, second) == ("curve", "test_piece") {
+                    continue;
+                }
+                let extra = format!("[tendon.{second}]\nnonsense = 1\n");
+                let both = [tendon, &extra, &text[end..]].concat();
+                let refused = RigFile::parse("test", &both).unwrap_err().to_string();
+                let expected = format!("`{first}` and `{second}` cannot both be given");
+                assert!(refused.contains(&expected), "{refused}");
+            }
+        }
     }
 
     /// Twice as long is twice as soft, half the section as well: 0.6 mm × 120 mm to 0.8 mm × 100 mm is 32/15.

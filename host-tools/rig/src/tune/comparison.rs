@@ -48,7 +48,7 @@ pub fn comparison(
     rows.extend(
         swings
             .into_iter()
-            .flat_map(|swings| swing_rows(swings, rig, &section)),
+            .flat_map(|swings| swing_rows(swings, rig)),
     );
     rows
 }
@@ -166,7 +166,7 @@ fn servo_rows(servo: &MeasuredServo, motor: u8, rig: &RigFile) -> Vec<Comparison
         .collect()
 }
 
-fn swing_rows(swings: &Swings, rig: &RigFile, section: &str) -> Vec<ComparisonRow> {
+fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
     let first_mode = swings.all.iter().map(|swing| ComparisonRow {
         name: format!("first mode at {:.0} N", swing.pretension_n),
         unit: "Hz",
@@ -181,18 +181,28 @@ fn swing_rows(swings: &Swings, rig: &RigFile, section: &str) -> Vec<ComparisonRo
         configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
         key: Some((SIMULATION.into(), TRANSVERSE_INERTIA.name)),
     };
-    // The travels are means of the three axes.
+    // The pretension moves the three motors together, and the leg leans by what their plays differ by: their travels tell the mean alone. It is
+    // that of each motor where the three do not differ.
+    let [first, ..] = rig.actuators.map(|actuator| actuator.play_m());
+    let alike = rig
+        .actuators
+        .iter()
+        .all(|actuator| actuator.play_m() == first);
     let mean = |value: fn(&Actuator) -> f64| rig.actuators.iter().map(value).sum::<f64>() / 3.0;
     let lead_m = mean(|actuator| actuator.lead_m);
     let backlash_rad = mean(Actuator::play_m) * std::f64::consts::TAU / lead_m;
     let travels = swings.travels.map(|travels| {
         let [low_n, high_n] = travels.tensions_n;
         let play = ComparisonRow {
-            name: "backlash_rad".into(),
+            name: if alike {
+                "backlash_rad".into()
+            } else {
+                "backlash_rad, mean of three".into()
+            },
             unit: "rad",
             measured: travels.play_m.scaled(std::f64::consts::TAU / lead_m),
             configured: Some(backlash_rad),
-            key: Some((section.into(), "backlash_rad")),
+            key: alike.then(|| (ACTUATOR.into(), "backlash_rad")),
         };
         let stretch = ComparisonRow {
             name: format!("stretch, {low_n:.0} to {high_n:.0} N"),

@@ -92,7 +92,9 @@ impl UncertainValue {
         let value = numbers.iter().map(|one| one.value).sum::<f64>() / count;
         let own: f64 = numbers.iter().map(|one| one.uncertainty.powi(2)).sum();
         let apart: f64 = numbers.iter().map(|one| (one.value - value).powi(2)).sum();
-        let spread = 2.0 * (apart / (count * (count - 1.0).max(1.0))).sqrt();
+        let free = numbers.len().saturating_sub(1).max(1);
+        let deviation = (apart / (count * free as f64)).sqrt();
+        let spread = 2.0 * student_part(free) * deviation;
         Self {
             value,
             uncertainty: (own.sqrt() / count).max(spread),
@@ -116,8 +118,11 @@ impl UncertainValue {
 pub(super) type Equation<const N: usize> = ([f64; N], f64);
 
 /// By how much more than two standard deviations 95 of 100 numbers are off, where so many equations more than unknowns tell the
-/// deviation: Student's t by the first terms of its series, within 3 % from two equations on.
+/// deviation: Student's t by the first terms of its series, within 3 % from two equations on; for one by a table.
 fn student_part(free: usize) -> f64 {
+    if free == 1 {
+        return 12.706 / 2.0;
+    }
     let one = 1.0 / free as f64;
     (1.960 + one * (2.372 + one * (2.823 + one * 2.556))) / 2.0
 }
@@ -178,7 +183,13 @@ mod tests {
     /// The quantiles of Student's t in any table.
     #[test]
     fn few_equations_tell_less() {
-        for (free, quantile) in [(2, 4.303), (4, 2.776), (13, 2.160), (200, 1.972)] {
+        for (free, quantile) in [
+            (1, 12.706),
+            (2, 4.303),
+            (4, 2.776),
+            (13, 2.160),
+            (200, 1.972),
+        ] {
             assert!((2.0 * student_part(free) / quantile - 1.0).abs() < 0.035);
         }
     }
@@ -197,6 +208,24 @@ mod tests {
             off += u32::from((slope.value - 2.0).abs() > slope.uncertainty);
         }
         assert!((160..240).contains(&off), "{off}");
+    }
+
+    /// As many of three numbers that were measured again and again, whose own uncertainty says nothing.
+    #[test]
+    fn five_of_a_hundred_means_are_off_by_more() {
+        let mut rng = fastrand::Rng::with_seed(2);
+        for count in [2, 3, 4] {
+            let mut off = 0;
+            for _ in 0..4000 {
+                let mut noise = || (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0;
+                let numbers: Vec<_> = (0..count)
+                    .map(|_| UncertainValue::new(noise(), 0.0))
+                    .collect();
+                let mean = UncertainValue::mean_of_repeated(&numbers);
+                off += u32::from(mean.value.abs() > mean.uncertainty);
+            }
+            assert!((160..240).contains(&off), "{count}: {off}");
+        }
     }
 
     #[test]

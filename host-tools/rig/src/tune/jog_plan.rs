@@ -1,5 +1,6 @@
 //! The jogs of one motor that are planned: their voltages and travels.
 
+use super::error::TuneError;
 use super::servo::ServoPlan;
 use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::control::{SHOWN_PART, step_range_m};
@@ -21,6 +22,9 @@ pub(super) const LOADED_TRAVEL_M: f32 = 2e-3;
 
 /// How far a tendon is paid out at the most until it is slack, m: as far as a measurement that was stopped may have reeled it in.
 pub(super) const PAY_OUT_MAX_M: f32 = REEL_MAX_M + LOADED_TRAVEL_M;
+
+/// Part of the highest tension of a jog from which on the loaded jogs begin: half of it is left to them.
+pub(super) const LOADED_PART: f32 = 0.4;
 
 /// Slowest jog, m/s: a screw sticks and slips where it is slower.
 const SLOWEST_M_PER_S: f32 = 8e-4;
@@ -134,5 +138,40 @@ impl JogPlan {
     pub fn reach_m(&self) -> [f32; 2] {
         let out_m = PAY_OUT_MAX_M + self.travel_m + self.servo.travel_m();
         [out_m, REEL_MAX_M + LOADED_TRAVEL_M]
+    }
+
+    /// Refuses a driver whose current output shows nothing at the voltages that a jog may have.
+    pub(super) fn require_shown<E>(&self) -> Result<(), TuneError<E>> {
+        let [low_v, high_v] = self.voltages_v;
+        if low_v < high_v {
+            return Ok(());
+        }
+        Err(TuneError::undetermined(
+            format!(
+                "the driver of motor {} shows a current from {low_v:.2} V on, and the jogs of its measurement have {high_v:.2} V at the most",
+                self.motor
+            ),
+            "take the motor's constants from its data sheet: its `current_output` is \"magnitude_when_driven\", and shows no shorter pulses",
+        ))
+    }
+
+    /// Refuses a leg whose other tendons pull: where one is paid out, they pull the leg to their side, and the more. Its own may pull by no
+    /// more than a jog may, or it would not be reeled in again to where it was.
+    pub(super) fn require_loose<E>(&self, tensions_n: &[f32; 3]) -> Result<(), TuneError<E>> {
+        let most_n = |number| {
+            if number == self.motor {
+                self.tension_max_n
+            } else {
+                LOADED_PART * self.tension_max_n
+            }
+        };
+        let mut tendons = (1_u8..).zip(tensions_n);
+        match tendons.find(|&(number, &tension_n)| tension_n > most_n(number)) {
+            Some((number, tension_n)) => Err(TuneError::undetermined(
+                format!("tendon {number} pulls by {tension_n:.0} N before a motor is jogged"),
+                "let the leg relax: `leg hold`, then `leg disarm`; before it is homed, pay its tendons out with `leg jog`",
+            )),
+            None => Ok(()),
+        }
     }
 }

@@ -1,7 +1,9 @@
 //! The jogs of one motor: without a tension and against one, both ways, at several voltages.
 
 use super::error::{LegError, TuneError};
-use super::jog_plan::{JogPlan, LOADED_TRAVEL_M, PAY_OUT_MAX_M, REEL_MAX_M, STEP_M, TRAVEL_MIN_M};
+use super::jog_plan::{
+    JogPlan, LOADED_PART, LOADED_TRAVEL_M, PAY_OUT_MAX_M, REEL_MAX_M, STEP_M, TRAVEL_MIN_M,
+};
 use super::servo::{MeasuredServo, ServoJogs, point};
 use super::tuned_leg::TunedLeg;
 use leg_base::jog_report::{Finding, end_finding, tension_finding};
@@ -11,9 +13,6 @@ use leg_firmware::telemetry::Telemetry;
 
 /// A tendon whose tension changes by less over a step is slack, N: the softest leg changes by some newtons.
 const SLACK_CHANGE_N: f32 = 0.5;
-
-/// Part of the highest tension of a jog from which on the loaded jogs begin: half of it is left to them.
-const LOADED_PART: f32 = 0.4;
 
 /// How often the jogs against a tension are repeated.
 const LOADED_TIMES: u32 = 2;
@@ -48,7 +47,8 @@ pub(super) async fn jog_all<L: TunedLeg>(
 ) -> Result<(Vec<Jogged>, Result<MeasuredServo, Finding>), TuneError<L::Error>> {
     let own = |telemetry: &Telemetry<f32>| own_of(plan.motor, &telemetry.pulled_m);
     let start = leg.telemetry().await?;
-    require_loose(plan, &start.tensions_n)?;
+    plan.require_shown()?;
+    plan.require_loose(&start.tensions_n)?;
     let start_m = own(&start);
     let mut jogs = Jogs {
         leg,
@@ -84,19 +84,6 @@ pub(super) async fn jog_all<L: TunedLeg>(
         motor: plan.motor,
         by_m,
     })
-}
-
-/// Refuses a leg whose other tendons pull: where one is paid out, they pull the leg to their side, and the more.
-fn require_loose<E>(plan: &JogPlan, tensions_n: &[f32; 3]) -> Result<(), TuneError<E>> {
-    let taut_n = LOADED_PART * plan.tension_max_n;
-    let mut others = (1_u8..).zip(tensions_n);
-    match others.find(|&(number, &tension_n)| number != plan.motor && tension_n > taut_n) {
-        Some((number, tension_n)) => Err(TuneError::undetermined(
-            format!("tendon {number} pulls by {tension_n:.0} N before a motor is jogged"),
-            "let the leg relax: `leg hold`, then `leg disarm`; before it is homed, pay its tendons out with `leg jog`",
-        )),
-        None => Ok(()),
-    }
 }
 
 /// What is of a motor's, from 1, own axis.

@@ -2,13 +2,15 @@
 
 use super::{jog, leg};
 use crate::common::require_said;
+use leg_firmware::jog::{JogDemand, JogDrive};
 use leg_firmware::supervisor::{Fault, State};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
-use leg_host::tune::{OperatorTuneError, measure_swing};
+use leg_host::tune::{OperatorTuneError, measure_motor, measure_swing, supply_v};
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
-use leg_rig::tune::SwingPlan;
+use leg_rig::tune::{JogPlan, SwingPlan};
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use leg_sim::link::InProcess;
 use leg_sim::plant::Defect;
@@ -52,7 +54,42 @@ fn a_leg_whose_tendons_pull_is_refused() {
     let mut operator = Operator::open(host, HostIdentity::FIXED, CancelFlag::default()).unwrap();
     let before = line.with_plant(|plant| plant.truth().unstretched_m);
     let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().to_string();
-    assert!(failure.contains("tendon 2 pulls by 70 N"), "{failure}");
+    assert!(failure.contains("tendon 1 pulls by 70 N"), "{failure}");
+    assert_eq!(line.with_plant(|plant| plant.truth().unstretched_m), before);
+}
+
+/// It would not be reeled in again to where it was.
+#[test]
+fn a_tendon_that_pulls_more_than_a_jog_may_is_refused() {
+    let rig = RigFile::load(None).unwrap();
+    let (_line, mut operator, _) = leg(&rig, &rig, 1);
+    let settings = operator.settings().unwrap();
+    let mut plan = JogPlan::new(1, &settings, supply_v(&mut operator, &settings).unwrap());
+    let drive = JogDrive::Voltage(plan.loaded_v);
+    let reeled_in = JogDemand {
+        motor: 1,
+        travel_m: 0.01,
+        drive,
+    };
+    operator.jog(&reeled_in).unwrap();
+    plan.tension_max_n = 4.0;
+    let refused = measure_motor(&mut operator, &plan, &settings, &mut |_| ()).unwrap_err();
+    assert!(
+        refused.to_string().contains("tendon 1 pulls by"),
+        "{refused}"
+    );
+}
+
+/// Its voltages would be in the wrong order, and the currents nothing.
+#[test]
+fn a_driver_that_shows_no_current_in_a_jog_is_refused_before_anything_moves() {
+    let actuator = "[actuator]\nlead_m = 3e-3\ncurrent_output = \"magnitude_when_driven\"\n";
+    let text = [READY_RIGS[0].text, actuator].concat();
+    let rig = RigFile::parse("test", &text).unwrap();
+    let (line, mut operator, _) = leg(&rig, &rig, 1);
+    let before = line.with_plant(|plant| plant.truth().unstretched_m);
+    let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().to_string();
+    assert!(failure.contains("shows a current from"), "{failure}");
     assert_eq!(line.with_plant(|plant| plant.truth().unstretched_m), before);
 }
 

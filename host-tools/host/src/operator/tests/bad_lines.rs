@@ -61,6 +61,28 @@ fn a_stop_that_nobody_acknowledged_is_reported_whatever_went_before() {
     error_of!(interrupted(LineState::Whole), OperatorError::Cancelled);
 }
 
+/// As a bus on which nobody acknowledges, while its board starts.
+#[test]
+fn a_stop_goes_out_as_soon_as_the_line_takes_frames_again() {
+    let (leg, full) = (hanging_leg(), Rc::new(Cell::new(0)));
+    let left = Rc::clone(&full);
+    let send = move |inner: &mut EmulatedTransport, bytes: &[u8]| match left.get() {
+        0 => inner.send(bytes),
+        count => {
+            left.set(count - 1);
+            Err(io::ErrorKind::TimedOut.into())
+        }
+    };
+    let mut operator = operator(BadLine::new(&leg, send, |_| ()), &CancelFlag::default());
+    begin_move(&mut operator);
+    full.set(20);
+    operator.stop().unwrap();
+    assert_eq!(telemetry(&mut operator).state, State::Held);
+    // For longer than a stop is repeated.
+    full.set(u32::MAX);
+    error_of!(operator.stop(), OperatorError::NotStopped(_));
+}
+
 #[test]
 fn a_limit_is_not_said_to_be_held_where_no_stop_was_acknowledged() {
     let leg = hanging_leg();

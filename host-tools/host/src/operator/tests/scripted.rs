@@ -43,6 +43,42 @@ fn a_reply_of_another_kind_is_named() {
     }
 }
 
+/// Hosts that share a line count their requests alike now and then.
+#[test]
+fn a_reply_to_another_host_with_the_same_number_is_left_out() {
+    let (telemetry, settings) = resting_leg();
+    let kept = settings.clone();
+    let mut operator = scripted_by_number(move |number, request| {
+        let (other, own) = match request {
+            HostRequest::Telemetry => (HostReply::Done, telemetry_reply(&telemetry)),
+            HostRequest::GetSettings => {
+                let settings = HostReply::Settings(settings.clone());
+                (telemetry_reply(&telemetry), settings)
+            }
+            HostRequest::Identify(_) => (HostReply::Done, introduction()),
+            _ => (telemetry_reply(&telemetry), HostReply::Done),
+        };
+        vec![(number, other), (number, own)]
+    })
+    .unwrap();
+    operator.telemetry().unwrap();
+    assert_eq!(operator.settings().unwrap(), kept);
+    operator.command(Command::KeepAlive).unwrap();
+    operator.stop().unwrap();
+}
+
+/// It had begun: nothing is wrong with what was asked.
+#[test]
+fn what_a_stop_came_before_has_failed() {
+    let superseded = HostRefusal::Command(CommandRefusal::Superseded);
+    let error = OperatorError::Refused("follow the path", superseded);
+    assert!(is_failed(&error));
+    assert_eq!(
+        error.to_string(),
+        "the leg did not follow the path: a stop came first"
+    );
+}
+
 #[test]
 fn settings_that_read_back_otherwise_are_named() {
     let (_, kept) = resting_leg();
