@@ -179,6 +179,10 @@ pub fn findings(report: &JogReport<f32>, settings: &Settings) -> Vec<Finding> {
 #[must_use]
 pub fn end_finding(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
     let motor = report.demand.motor;
+    let stands = matches!(report.end, JogEnd::NoCounts | JogEnd::Time);
+    if stands && let Some(finding) = too_low(report, settings) {
+        return Some(finding);
+    }
     Some(match report.end {
         // What a monitor ended before the jog itself did.
         JogEnd::CutOff if report.time_s > JOG_RISE_S / 2.0 && counted_m(report) == 0.0 => {
@@ -216,6 +220,18 @@ pub fn end_finding(report: &JogReport<f32>, settings: &Settings) -> Option<Findi
             "give a higher voltage; look for a stiff screw",
         ),
     })
+}
+
+/// A voltage that friction takes: nothing is wrong with the motor.
+fn too_low(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
+    let motor = report.demand.motor;
+    let servo = servo_of(motor, settings);
+    let friction_v = servo.resistance_ohm * servo.friction_a;
+    let low_v = voltage_v(report).filter(|&voltage_v| voltage_v < friction_v)?;
+    Some(Finding::new(
+        format!("{low_v:.2} V do not turn motor {motor}: less than its friction takes"),
+        format!("give {:.1} V", slow_voltage_v(motor, settings)),
+    ))
 }
 
 /// How far the motor's own encoder counted, m.

@@ -67,6 +67,10 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         };
         let answer = match &line {
             Line::Whole(text) if text.trim_ascii().is_empty() => continue,
+            // Some editors put a mark before the first line.
+            Line::Whole(text) if number == 1 => {
+                evaluator.answer(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text), &rig)
+            }
             Line::Whole(text) => evaluator.answer(text, &rig),
             Line::TooLong => Err(LineError::TooLong.into()),
         };

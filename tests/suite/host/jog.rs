@@ -270,6 +270,27 @@ fn a_motor_that_turns_the_other_way_says_nothing_of_the_load_cells() {
     }
 }
 
+/// Nothing is wrong with the motor.
+#[test]
+fn a_voltage_that_friction_takes_is_named_with_one_that_would_do() {
+    let (_line, mut operator) = leg(InitialState::Slack);
+    let settings = operator.settings().unwrap();
+    let demand = JogDemand {
+        drive: JogDrive::Voltage(0.1),
+        ..demand(&mut operator, 1, 2.0)
+    };
+    let (report, _) = operator.jog(&demand).unwrap();
+    let found = findings(&report, &settings);
+    assert_eq!(
+        found[0].what,
+        "0.10 V do not turn motor 1: less than its friction takes"
+    );
+    assert_eq!(
+        found[0].remedy,
+        format!("give {:.1} V", slow_voltage_v(1, &settings))
+    );
+}
+
 /// Load cells that show next to nothing: the current ends the jog, before the tension is too high.
 #[test]
 fn without_its_load_cell_the_current_ends_a_jog() {

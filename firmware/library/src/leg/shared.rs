@@ -279,14 +279,15 @@ impl<T: Scalar> Shared<T> {
         self.estimate.as_ref().map(|estimate| estimate.residual_m)
     }
 
-    /// Has every tendon stretch by a factor of what it did, at the tensions that they have now.
+    /// Has every tendon stretch by a factor of what its settings say, at the tensions that they have now.
     #[cold]
     #[inline(never)]
     pub fn scale_tendons(&mut self, factor: T) {
+        let change = factor / self.elongation_factor;
         for tendon in &mut self.mechanism.tendons {
-            tendon.scale(factor);
+            tendon.scale(change);
         }
-        self.elongation_factor *= factor;
+        self.elongation_factor = factor;
         // The next target begins where the tensions are.
         self.targets.start(self.compensation != Compensation::Off);
     }

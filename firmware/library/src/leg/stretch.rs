@@ -124,7 +124,7 @@ impl StretchSearch {
 enum StretchFound<T> {
     /// Nothing to be done.
     Nothing,
-    /// By how much the tendons stretch for what the mechanism says.
+    /// By how much the tendons stretch for what the settings say.
     Factor(T),
     /// A load that a leg that hangs straight down cannot have.
     Load,
@@ -172,9 +172,10 @@ fn find_factor<T: Scalar>(shared: &Shared<T>) -> StretchFound<T> {
     let factor = T::one() - error.mean_m * T::from(3.0) / (a + b + c);
     let all = shared.elongation_factor * factor;
     let [least, most] = FACTORS.map(T::from);
-    let other = (factor - T::one()).abs() > T::from(LEAST_PART);
-    if other && all >= least && all <= most && load_is_within(shared, MEASURED_KG) {
-        StretchFound::Factor(factor)
+    let is_other = |factor: T| (factor - T::one()).abs() > T::from(LEAST_PART);
+    if is_other(factor) && all >= least && all <= most && load_is_within(shared, MEASURED_KG) {
+        // Where what was taken over before was wrong, as with a payload while homing, the settings are right.
+        StretchFound::Factor(if is_other(all) { all } else { T::one() })
     } else {
         StretchFound::Nothing
     }

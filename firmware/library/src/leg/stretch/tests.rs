@@ -134,6 +134,22 @@ fn all_that_is_taken_over_is_bounded() {
     ));
 }
 
+/// What a wrong homing had taken over is taken back, to the settings themselves.
+#[test]
+fn tendons_that_are_as_the_settings_say_after_all_have_no_factor() {
+    for (before, now, expected) in [(1.08, 1.01, 1.0), (0.9, 0.98, 1.0), (1.2, 1.1, 1.1)] {
+        let mut shared = hanging(PRETENSION_N, now / before - 1.0);
+        shared.elongation_factor = before;
+        let (StretchFound::Factor(factor), _) = searched(&mut shared, true) else {
+            panic!("{before} {now}");
+        };
+        let off: f64 = if expected == 1.0 { 0.0 } else { 1e-3 };
+        assert!((factor - expected).abs() <= off, "{factor} {expected}");
+        shared.scale_tendons(factor);
+        assert_eq!(shared.elongation_factor, factor);
+    }
+}
+
 /// One load cell that is off shows a load beside the length: its tendons are not measured, and with more of it it is a fault.
 #[test]
 fn a_load_that_hangs_straight_down_is_a_fault_and_no_other_tendon() {

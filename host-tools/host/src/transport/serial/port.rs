@@ -95,7 +95,8 @@ pub(super) fn refused(port: &str, error: &serialport::Error) -> Failure {
 
 pub(super) fn busy(port: &str) -> Failure {
     let help = if cfg!(unix) {
-        "end that program; `fuser` with the port's path names it"
+        "end that program; `fuser` with the port's path names it. A `leg` shares its port with the commands of the same user and \
+         TMPDIR alone: from another one, stop the leg by its emergency stop"
     } else {
         "end that program: on this system one program at a time may use a port"
     };
