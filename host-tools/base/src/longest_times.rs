@@ -3,16 +3,19 @@
 use leg_firmware::settings::Settings;
 use std::time::Duration;
 
-/// What is waited for whatever the settings are: a move with all that belongs to it, and a homing.
+/// How long a move with all that belongs to it is waited for whatever the settings are.
 pub const USUAL_MOVE: Duration = Duration::from_secs(60);
-/// As above.
+/// The same of a homing.
 pub const USUAL_HOMING: Duration = Duration::from_secs(120);
+
+/// Longer than any settings ask for; of settings that give no number, too.
+const DAY: Duration = Duration::from_secs(24 * 3600);
 
 /// Time constants of a filter after which it has settled.
 const FILTER_TIMES: f32 = 10.0;
 
-/// How often a tendon is reeled in or paid out by the longest travel of homing, and how often the leg is averaged at rest meanwhile: each tendon
-/// twice, and as often again for what is done once.
+/// How often a tendon is reeled in or paid out by the longest travel of homing, and how often the leg is averaged at rest meanwhile: each of three tendons
+/// twice, all of them once at the begin, and one to spare.
 const HOMING_TRAVELS: f32 = 8.0;
 const HOMING_RESTS: f32 = 8.0;
 
@@ -29,7 +32,7 @@ pub fn longest_move(settings: &Settings) -> Duration {
     longer(USUAL_MOVE, turn_s + pretension_s + filters_s)
 }
 
-/// Longest homing, with the pretension that the leg is given then.
+/// Longest homing, until the leg begins to be tensioned.
 #[must_use]
 pub fn longest_homing(settings: &Settings) -> Duration {
     let homing = &settings.homing;
@@ -41,15 +44,15 @@ pub fn longest_homing(settings: &Settings) -> Duration {
 
 /// The usual time, or twice the time of the parts.
 fn longer(usual: Duration, parts_s: f32) -> Duration {
-    let parts = Duration::try_from_secs_f32(2.0 * parts_s).unwrap_or(Duration::MAX);
-    usual.max(parts)
+    let parts = Duration::try_from_secs_f32(2.0 * parts_s).unwrap_or(DAY);
+    parts.clamp(usual, DAY)
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-    use super::{USUAL_HOMING, USUAL_MOVE, longest_homing, longest_move};
+    use super::{DAY, USUAL_HOMING, USUAL_MOVE, longest_homing, longest_move};
     use leg_firmware::settings::Settings;
 
     #[test]
@@ -66,5 +69,7 @@ mod tests {
         settings.homing.settle_time_s = 60.0;
         settings.homing.average_time_s = 60.0;
         assert!(longest_homing(&settings).as_secs_f32() > 6.0 * 120.0);
+        settings.tilt_max_sine = f32::NAN;
+        assert_eq!(longest_move(&settings), DAY);
     }
 }

@@ -66,12 +66,15 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             break;
         };
         let answer = match &line {
-            Line::Whole(text) if text.trim_ascii().is_empty() => continue,
-            // Some editors put a mark before the first line.
-            Line::Whole(text) if number == 1 => {
-                evaluator.answer(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text), &rig)
+            Line::Whole(text) => {
+                // Some editors put a mark before the first line.
+                let marked = text.strip_prefix(b"\xef\xbb\xbf").filter(|_| number == 1);
+                let text = marked.unwrap_or(text);
+                if text.trim_ascii().is_empty() {
+                    continue;
+                }
+                evaluator.answer(text, &rig)
             }
-            Line::Whole(text) => evaluator.answer(text, &rig),
             Line::TooLong => Err(LineError::TooLong.into()),
         };
         answered += 1;

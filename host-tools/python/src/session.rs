@@ -2,6 +2,7 @@
 
 use crate::signal_log::SignalLog;
 use crate::signals::Snapshot;
+use leg_base::longest_times::{longest_homing, longest_move};
 use leg_base::settling::Settling;
 use leg_base::timed_path::TimedPath;
 use leg_firmware::command::{Command, CommandRefusal, Compensation};
@@ -286,6 +287,16 @@ impl Session {
         self.command(&sender.approach())?;
         self.path = Some(sender);
         Ok(())
+    }
+
+    /// Longest move, with all that belongs to it, by the leg's settings, s.
+    pub fn move_s(&self) -> f64 {
+        longest_move(&self.settings).as_secs_f64()
+    }
+
+    /// The same of a homing.
+    pub fn homing_s(&self) -> f64 {
+        longest_homing(&self.settings).as_secs_f64()
     }
 
     /// Whether a path is followed, the way to its start included.

@@ -17,10 +17,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// Longest homing, longest move and longest relaxing with all that belongs to them, s: those of the command line.
-const HOMING_S: f64 = 120.0;
-const MOVE_S: f64 = 60.0;
-
 /// Most ticks of one step: a day.
 const TICKS_MAX: u64 = 86_400 * TICK_HZ as u64;
 
@@ -81,7 +77,7 @@ impl SimulatedLeg {
         self.work(py, |session| {
             session.command(&command)?;
             if waits {
-                session.settle(MOVE_S)
+                session.settle(session.move_s())
             } else {
                 Ok(())
             }

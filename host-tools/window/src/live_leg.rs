@@ -184,6 +184,10 @@ impl LiveLeg {
             self.commanded = None;
             self.compensation = None;
         }
+        // Also where another host homed it or sent it off.
+        if matches!(telemetry.state, State::Homing | State::KeepingStation) {
+            self.compensation = Some(Compensation::Estimated);
+        }
         self.telemetry = Some(telemetry);
         self.heard_s = Some(self.now_s);
         let report = Report::new(&telemetry, &self.constants);
@@ -218,8 +222,6 @@ impl LiveLeg {
         self.refusal = None;
         match command {
             Command::Compensation(compensation) => self.compensation = Some(compensation),
-            // A leg that homes compensates.
-            Command::Home => self.compensation = Some(Compensation::Estimated),
             Command::Arm | Command::Clear | Command::Disarm | Command::Hold => {
                 self.commanded = None;
             }

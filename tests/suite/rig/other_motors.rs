@@ -250,6 +250,10 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
             "asks the tendons for more",
         ),
         (
+            "[control.servo]\nspeed_m_per_s = 1e-4\n",
+            "no slower turn than 0.01 may be given: let the tendons have at least 2.7e-4",
+        ),
+        (
             "[control.servo]\ndead_band_m = 1e-7\n",
             "narrower than a count",
         ),

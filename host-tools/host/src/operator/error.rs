@@ -89,7 +89,7 @@ impl OperatorError {
                 ),
                 refusal::OTHER_SOURCES,
             ),
-            // It had begun, as a path whose next point the stop came before.
+            // Whatever it was, the leg was well commanded: the next point of a path, or what waited for its turn.
             Self::Refused(asked, HostRefusal::Command(CommandRefusal::Superseded)) => {
                 let superseded = HostRefusal::Command(CommandRefusal::Superseded);
                 let [reason, remedy] = refusal::description(&superseded);

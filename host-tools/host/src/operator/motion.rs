@@ -15,6 +15,10 @@ use std::time::Duration;
 /// How long a leg that another host has relax, or that starts, may stand still before it is waited for no longer.
 const STILL_TIME: Duration = Duration::from_secs(60);
 
+/// Whoever left the load out may not be there any more. It comes before the leg is active: one that begins with its load left out goes to where it would
+/// be without.
+const COMPENSATED: Command = Command::Compensation(Compensation::Estimated);
+
 /// How long something is waited for: usually, and at the most by the settings of the leg.
 type Longest = (Duration, fn(&Settings) -> Duration);
 
@@ -142,13 +146,18 @@ impl Operator {
                 return refuse(CommandRefusal::State(state));
             }
             _ if !telemetry.homed => return refuse(CommandRefusal::NotHomed),
-            State::Disarmed | State::KeepingStation => self.command(Command::Arm)?,
-            State::Held | State::Off => self.command(Command::Clear)?,
+            State::KeepingStation => self.command(Command::Arm)?,
+            State::Disarmed => {
+                self.command(COMPENSATED)?;
+                self.command(Command::Arm)?;
+            }
+            State::Held | State::Off => {
+                self.command(COMPENSATED)?;
+                self.command(Command::Clear)?;
+            }
             // Another host's, or not yet ended by its silence: the commands that follow show it.
             State::Active | State::Boot | State::RampingDown => return Ok(()),
         }
-        // Whoever left the load out may not be there any more.
-        self.command(Command::Compensation(Compensation::Estimated))?;
         if telemetry.state == State::Disarmed {
             self.settle(asked)?;
         }

@@ -38,6 +38,9 @@ fn ends(request: &HostRequest) -> bool {
 /// Whether a reply may be that of a request. Hosts that share a line hear each other's replies, whose numbers may be alike.
 const fn answers(request: &HostRequest, reply: &HostReply) -> bool {
     match reply {
+        HostReply::Refused(HostRefusal::Command(_) | HostRefusal::OtherHost) => {
+            matches!(request, HostRequest::Command { .. })
+        }
         HostReply::Refused(_) => true,
         HostReply::Done => matches!(
             request,
@@ -45,7 +48,6 @@ const fn answers(request: &HostRequest, reply: &HostReply) -> bool {
                 | HostRequest::Stream(_)
                 | HostRequest::SetSettings(_)
                 | HostRequest::SaveSettings
-                | HostRequest::Recorder(_)
         ),
         HostReply::Identified(_) => matches!(request, HostRequest::Identify(_)),
         HostReply::Telemetry(_) => matches!(request, HostRequest::Telemetry),
@@ -58,7 +60,7 @@ const fn answers(request: &HostRequest, reply: &HostReply) -> bool {
 
 /// What came as the answer to a request.
 #[derive(Debug, Default)]
-pub(super) struct Answer {
+pub(super) struct ReceivedReply {
     /// The reply; none if none came in time.
     pub reply: Option<HostReply>,
     /// Whether the leg could not read a frame meanwhile.
@@ -130,8 +132,8 @@ impl Operator {
         numbers: &[u16],
         request: &HostRequest,
         until: Duration,
-    ) -> Result<Answer, OperatorError> {
-        let mut answer = Answer::default();
+    ) -> Result<ReceivedReply, OperatorError> {
+        let mut answer = ReceivedReply::default();
         while let Some((number, reply)) = self.next_reply(until)? {
             if numbers.contains(&number) {
                 let superseded =

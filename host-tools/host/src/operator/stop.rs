@@ -74,13 +74,7 @@ impl Operator {
                 told = self.now();
                 (self.late_watcher)(&error);
             }
-            match self.connection.send_urgent(&request) {
-                Ok(number) => numbers.push(number),
-                // A bus on which nobody acknowledges takes no frame: a board that starts takes the next.
-                Err(OperatorError::ConnectionLost(_, source))
-                    if source.kind() == io::ErrorKind::TimedOut => {}
-                Err(error) => return Err(error),
-            }
+            numbers.extend(taken(self.connection.send_urgent(&request))?);
             if self.stop_acknowledged(&numbers, &request)? {
                 return Ok(());
             }
@@ -104,8 +98,8 @@ impl Operator {
                 }
                 HostReply::Refused(HostRefusal::NotIdentified) => {
                     let schema = HOST_SCHEMA;
-                    self.connection
-                        .send(&HostRequest::Identify(Hello { schema }))?;
+                    let hello = HostRequest::Identify(Hello { schema });
+                    taken(self.connection.send(&hello))?;
                     return Ok(false);
                 }
                 // No room, or superseded by another stop: to send the next at once would use up the time of a busy leg.
@@ -163,5 +157,18 @@ impl Operator {
             // A fault has come meanwhile, and the leg may follow commands now.
         }
         self.drive(|operator| operator.command(Command::Clear))
+    }
+}
+
+/// The number of what was sent; none where the line took no frame in time: a bus on which nobody acknowledges takes the next one when its board has
+/// started.
+fn taken(sent: Result<u16, OperatorError>) -> Result<Option<u16>, OperatorError> {
+    match sent {
+        Err(OperatorError::ConnectionLost(_, source))
+            if source.kind() == io::ErrorKind::TimedOut =>
+        {
+            Ok(None)
+        }
+        sent => sent.map(Some),
     }
 }

@@ -153,6 +153,28 @@ impl Transport for BadLine {
     }
 }
 
+/// It is held where it sags under a load that somebody has left out.
+#[test]
+fn a_leg_that_sags_does_not_rise_by_a_hold() {
+    let leg = hanging_leg();
+    let mut operator = host(&leg, 1);
+    operator.reach(&lean(20.0)).unwrap();
+    operator.command(Command::Arm).unwrap();
+    let left_out = Command::Compensation(Compensation::Off);
+    operator.command(left_out).unwrap();
+    leg.with_plant(|plant| plant.set_payload(1.0, 0.5));
+    for _ in 0..20 {
+        operator.pause(Duration::from_millis(100)).unwrap();
+        operator.command(Command::KeepAlive).unwrap();
+    }
+    operator.stop().unwrap();
+    let tip_m = |leg: &EmulatedLine| leg.with_plant(|plant| plant.truth().tip_m);
+    let before = tip_m(&leg);
+    operator.reach(&Goal::default()).unwrap();
+    let moved_mm = 1000.0 * (tip_m(&leg) - before).norm();
+    assert!(moved_mm < 0.3, "{moved_mm} mm");
+}
+
 /// Somebody has left its load out, and it would be held in the place of keeping station.
 #[test]
 fn a_leg_that_is_moved_compensates_again() {

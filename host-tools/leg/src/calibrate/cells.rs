@@ -41,14 +41,10 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     }
     let mut connection = args.leg.open(Purpose::Calibrate, options)?;
     require_drivers_off(&mut connection.operator, "let weights be hung on its cells")?;
-    let gravity_m_per_s2 = connection.operator.settings()?.rig.gravity_m_per_s2;
-    let weighings = weigh(args, &mut connection, gravity_m_per_s2)?;
-    let fit = fit(&weighings)?;
-    // Another host may have set something else meanwhile: that stays.
     let mut settings = connection.operator.settings()?;
-    let axis = &mut settings.axes[usize::from(args.cell) - 1];
-    axis.cell_n_per_code = fit.n_per_code as f32;
-    axis.cell_zero_code = fit.zero_code as f32;
+    let weighings = weigh(args, &mut connection, &settings)?;
+    let fit = fit(&weighings)?;
+    calibrate(&mut settings, args, &fit);
     let n_per_code = settings.axes.each_ref().map(|axis| axis.cell_n_per_code);
     let zero_code = settings.axes.each_ref().map(|axis| axis.cell_zero_code);
     let json = json_object! {
@@ -69,18 +65,24 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     })?;
     fit.require_straight(args.cell, &weighings)?;
     if args.set {
-        set(&mut connection.operator, &settings, args.save)?;
+        set(&mut connection.operator, args, &fit)?;
     }
     Ok(())
+}
+
+fn calibrate(settings: &mut Settings, args: &Args, fit: &CellFit) {
+    let axis = &mut settings.axes[usize::from(args.cell) - 1];
+    axis.cell_n_per_code = fit.n_per_code as f32;
+    axis.cell_zero_code = fit.zero_code as f32;
 }
 
 fn weigh(
     args: &Args,
     connection: &mut LegConnection,
-    gravity_m_per_s2: f32,
+    settings: &Settings,
 ) -> Result<Vec<KnownWeight>, Failure> {
     let (number, cell) = (args.cell, usize::from(args.cell) - 1);
-    let gravity = f64::from(gravity_m_per_s2);
+    let gravity = f64::from(settings.rig.gravity_m_per_s2);
     let mut weighings = Vec::new();
     for kg in &args.weights {
         let newtons = kg * gravity;
@@ -113,9 +115,12 @@ fn whole_mn(newtons: f64) -> f64 {
     (newtons * 1000.0).round() / 1000.0 + 0.0
 }
 
-fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), Failure> {
+fn set(operator: &mut Operator, args: &Args, fit: &CellFit) -> Result<(), Failure> {
+    // Another host may have set something else while the weights were hung: that stays.
+    let mut settings = operator.settings()?;
+    calibrate(&mut settings, args, fit);
     operator.set_settings(&settings.unhomed())?;
-    if save {
+    if args.save {
         operator.save_settings()?;
     }
     let next = next_step(operator)?;

@@ -1,6 +1,6 @@
 //! Commands, as a host gives them.
 
-use super::{HOMING_S, MOVE_S, SimulatedLeg};
+use super::SimulatedLeg;
 use crate::arguments::{self, TensionArguments, bounded};
 use crate::named;
 use leg_firmware::command::{Command, Compensation};
@@ -25,8 +25,8 @@ impl SimulatedLeg {
         self.work(py, |session| {
             session.command(&Command::Home)?;
             if wait {
-                session.reach(State::Active, "find its zero", HOMING_S)?;
-                session.settle(MOVE_S)?;
+                session.reach(State::Active, "find its zero", session.homing_s())?;
+                session.settle(session.move_s())?;
             }
             Ok(())
         })
@@ -71,7 +71,7 @@ impl SimulatedLeg {
         self.work(py, |session| {
             session.follow(path)?;
             if wait {
-                session.settle(lasts_s + 2.0 * MOVE_S)
+                session.settle(lasts_s + 2.0 * session.move_s())
             } else {
                 Ok(())
             }
@@ -127,7 +127,11 @@ impl SimulatedLeg {
         self.work(py, |session| {
             session.leave_path();
             session.command(&Command::Hold)?;
-            if wait { session.settle(MOVE_S) } else { Ok(()) }
+            if wait {
+                session.settle(session.move_s())
+            } else {
+                Ok(())
+            }
         })
     }
 
@@ -150,7 +154,7 @@ impl SimulatedLeg {
             session.leave_path();
             session.command(&Command::Disarm)?;
             if wait {
-                session.reach(State::Disarmed, "relax its tendons", MOVE_S)?;
+                session.reach(State::Disarmed, "relax its tendons", session.move_s())?;
             }
             Ok(())
         })

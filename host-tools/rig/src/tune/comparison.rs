@@ -48,7 +48,7 @@ pub fn comparison(
     rows.extend(
         swings
             .into_iter()
-            .flat_map(|swings| swing_rows(swings, rig)),
+            .flat_map(|swings| swing_rows(swings, rig, own)),
     );
     rows
 }
@@ -166,7 +166,7 @@ fn servo_rows(servo: &MeasuredServo, motor: u8, rig: &RigFile) -> Vec<Comparison
         .collect()
 }
 
-fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
+fn swing_rows(swings: &Swings, rig: &RigFile, own: usize) -> Vec<ComparisonRow> {
     let first_mode = swings.all.iter().map(|swing| ComparisonRow {
         name: format!("first mode at {:.0} N", swing.pretension_n),
         unit: "Hz",
@@ -181,29 +181,8 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
         configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
         key: Some((SIMULATION.into(), TRANSVERSE_INERTIA.name)),
     };
-    // The pretension moves the three motors together, and the leg leans by what their plays differ by: their travels tell the mean alone. It is
-    // that of each motor where the three do not differ.
-    let [first, ..] = rig.actuators.map(|actuator| actuator.play_m());
-    let alike = rig
-        .actuators
-        .iter()
-        .all(|actuator| actuator.play_m() == first);
-    let mean = |value: fn(&Actuator) -> f64| rig.actuators.iter().map(value).sum::<f64>() / 3.0;
-    let lead_m = mean(|actuator| actuator.lead_m);
-    let backlash_rad = mean(Actuator::play_m) * std::f64::consts::TAU / lead_m;
     let travels = swings.travels.map(|travels| {
         let [low_n, high_n] = travels.tensions_n;
-        let play = ComparisonRow {
-            name: if alike {
-                "backlash_rad".into()
-            } else {
-                "backlash_rad, mean of three".into()
-            },
-            unit: "rad",
-            measured: travels.play_m.scaled(std::f64::consts::TAU / lead_m),
-            configured: Some(backlash_rad),
-            key: alike.then(|| (ACTUATOR.into(), "backlash_rad")),
-        };
         let stretch = ComparisonRow {
             name: format!("stretch, {low_n:.0} to {high_n:.0} N"),
             unit: "mm",
@@ -218,15 +197,48 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
             configured: Some(rig.elongation_factor),
             key: Some((MEASURED_TENDON.into(), ELONGATION_FACTOR.name)),
         });
-        [Some(play), Some(stretch), factor]
+        let plays = play_rows(travels.play_m, rig, own);
+        plays.into_iter().chain([stretch]).chain(factor)
     });
     travels
         .into_iter()
         .flatten()
-        .flatten()
         .chain(first_mode)
         .chain([inertia])
         .collect()
+}
+
+/// The play of the gears. The pretension moves the three motors together, and the leg leans by what their plays differ by: the travels tell the mean alone.
+/// It is that of each motor where the file says that the three are alike.
+fn play_rows(play_m: UncertainValue, rig: &RigFile, own: usize) -> Vec<ComparisonRow> {
+    let row = |name: String, lead_m: f64, configured_m: f64, key| ComparisonRow {
+        name,
+        unit: "rad",
+        measured: play_m.scaled(std::f64::consts::TAU / lead_m),
+        configured: Some(configured_m * std::f64::consts::TAU / lead_m),
+        key,
+    };
+    let [first, ..] = &rig.actuators;
+    let alike = |actuator: &Actuator| actuator.play_m() == first.play_m();
+    if rig.actuators.iter().all(alike) {
+        // That of the measured motor first: what a file takes of it stands together.
+        let mut motors: Vec<_> = rig.actuators.iter().enumerate().collect();
+        motors.sort_by_key(|&(motor, _)| motor != own);
+        let each = motors.into_iter().map(|(motor, actuator)| {
+            let key = (motor_section(ACTUATOR, motor), "backlash_rad");
+            let name = format!("backlash_rad, motor {}", motor + 1);
+            row(name, actuator.lead_m, actuator.play_m(), Some(key))
+        });
+        return each.collect();
+    }
+    let mean = |value: fn(&Actuator) -> f64| rig.actuators.iter().map(value).sum::<f64>() / 3.0;
+    let name = "backlash_rad, mean of three that differ".into();
+    vec![row(
+        name,
+        mean(|actuator| actuator.lead_m),
+        mean(Actuator::play_m),
+        None,
+    )]
 }
 
 /// A table for people.

@@ -10,7 +10,7 @@ use crate::rig_file::derived::{
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::control::SHOWN_PART;
-use leg_firmware::settings::{CurrentOutput, SERVO};
+use leg_firmware::settings::{CurrentOutput, Motion, SERVO};
 use std::ops::Range;
 
 /// Phase margin below which a servo rings whatever the motor, degrees.
@@ -236,17 +236,40 @@ impl Motor<'_> {
         }
         let turn = decimal(self.file.gains.motion.speed_rad_per_s);
         if turn * self.basis.lever_m > 1.001 * speed {
-            let fit = 0.9 * speed / self.basis.lever_m;
+            let keys = [
+                "control.motion.speed_rad_per_s",
+                "control.servo.speed_m_per_s",
+            ];
             let text = format!(
-                "`control.motion.speed_rad_per_s` ({}) asks the tendons for more than `control.servo.speed_m_per_s` ({}): give \
-                 at most {}",
+                "`{}` ({}) asks the tendons for more than `{}` ({}): {}",
+                keys[0],
                 plain(turn),
+                keys[1],
                 plain(speed),
-                plain(two_digits_below(fit))
+                self.speed_remedy(speed)
             );
-            self.warn(&["control.motion.speed_rad_per_s"], text);
+            self.warn(&keys, text);
         }
         Ok(())
+    }
+
+    /// A turn that tendons of a speed, m/s, follow, or, where that is slower than any that may be given, a speed that follows the slowest.
+    fn speed_remedy(&self, speed: f64) -> String {
+        let fit = two_digits_below(0.9 * speed / self.basis.lever_m);
+        let turns = Motion::FIELDS
+            .iter()
+            .find(|field| field.name == "speed_rad_per_s");
+        let slowest = turns.map_or(0.0, |field| decimal(field.range[0]));
+        if fit >= slowest {
+            format!("give at most {}", plain(fit))
+        } else {
+            let least = two_digits_above(slowest * self.basis.lever_m / 0.9);
+            format!(
+                "no slower turn than {} may be given: let the tendons have at least {}",
+                plain(slowest),
+                plain(least)
+            )
+        }
     }
 
     /// An output that is silent in short pulses shows a motor that homes.

@@ -4,7 +4,7 @@ use leg_base::description;
 use leg_base::failure::Failure;
 use leg_base::longest_times::{longest_homing, longest_move};
 use leg_base::settling::{Settling, same_direction};
-use leg_firmware::command::Command;
+use leg_firmware::command::{Command, Compensation};
 use leg_firmware::jog::{JogDemand, JogReport};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
@@ -212,14 +212,24 @@ impl PageLeg {
     async fn activate(&self, asked: &'static str) -> Result<()> {
         match self.settle_state(asked).await?.state {
             State::Disarmed => {
+                self.compensate().await?;
                 self.command(Command::Arm, "arm").await?;
                 self.settle(asked).await?;
             }
             State::KeepingStation => self.command(Command::Arm, "arm").await?,
-            State::Held | State::Off => self.command(Command::Clear, "clear").await?,
+            State::Held | State::Off => {
+                self.compensate().await?;
+                self.command(Command::Clear, "clear").await?;
+            }
             _ => {}
         }
         Ok(())
+    }
+
+    /// A leg whose load is left out is measured with it.
+    async fn compensate(&self) -> Result<()> {
+        let compensated = Command::Compensation(Compensation::Estimated);
+        self.command(compensated, "compensation on").await
     }
 }
 
