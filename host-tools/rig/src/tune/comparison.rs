@@ -355,3 +355,25 @@ fn written(value: f64, uncertainty: f64) -> String {
     let digits = 1.0 + value.abs().log10().floor() - last;
     plain(significant(value, digits.clamp(1.0, 6.0) as usize))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{UncertainValue, play_rows, section};
+    use crate::rig_file::RigFile;
+
+    /// A mean is that of each motor only where they are alike.
+    #[test]
+    fn the_mean_play_is_written_for_motors_that_are_alike() {
+        let mut rig = RigFile::load(None).unwrap();
+        let play_m = UncertainValue::new(3e-6, 1e-8);
+        let alike = section(2, &play_rows(play_m, &rig, 1));
+        let place = |key: &str| alike.find(key).unwrap();
+        assert!(place("[actuator.2]") < place("[actuator.1]"), "{alike}");
+        assert_eq!(alike.matches("backlash_rad = ").count(), 3, "{alike}");
+        rig.actuators[0].backlash_rad *= 2.0;
+        let rows = play_rows(play_m, &rig, 1);
+        assert!(rows.iter().all(|row| row.name.contains("mean of three")));
+        assert!(!section(2, &rows).contains("backlash_rad = "));
+    }
+}

@@ -143,8 +143,8 @@ impl JogPlan {
     /// Refuses a driver whose current output shows nothing at the voltages that a jog may have.
     pub(super) fn require_shown<E>(&self) -> Result<(), TuneError<E>> {
         let [low_v, high_v] = self.voltages_v;
-        // Not where it is no number.
-        if !(self.step_v > 0.0) {
+        // The voltages are no numbers then.
+        if self.step_v <= 0.0 {
             return Err(TuneError::undetermined(
                 "the motors have no supply before a motor is jogged",
                 "switch the supply of the motors on, and see that the emergency stop is released",

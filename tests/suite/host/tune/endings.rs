@@ -58,6 +58,16 @@ fn a_leg_whose_tendons_pull_is_refused() {
     assert_eq!(line.with_plant(|plant| plant.truth().unstretched_m), before);
 }
 
+#[test]
+fn motors_without_a_supply_are_named() {
+    let rig = RigFile::load(None).unwrap();
+    let (_line, mut operator, _) = leg(&rig, &rig, 1);
+    let settings = operator.settings().unwrap();
+    let plan = JogPlan::new(1, &settings, 0.0);
+    let refused = measure_motor(&mut operator, &plan, &settings, &mut |_| ()).unwrap_err();
+    assert!(refused.to_string().contains("have no supply"), "{refused}");
+}
+
 /// It would not be reeled in again to where it was.
 #[test]
 fn a_tendon_that_pulls_more_than_a_jog_may_is_refused() {
