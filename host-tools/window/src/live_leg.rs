@@ -22,6 +22,7 @@ use frames::{Frames, Numbers};
 use leg_base::tick_time::seconds;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::host_link::{HostId, HostRefusal, HostReply, TelemetryReport};
+use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::control_settings;
 use leg_rig::rig_file::{RigFile, RigText};

@@ -319,7 +319,7 @@ mod tests {
         for (name, within) in [
             ("resistance_ohm", 0.05),
             ("servo, phase margin", 0.05),
-            ("backlash_rad", 0.3),
+            ("backlash_rad, motor 1", 0.3),
             ("leg_transverse_inertia_kg_m2", 0.1),
         ] {
             let row = outcome.rows.iter().find(|row| row.name == name).unwrap();
