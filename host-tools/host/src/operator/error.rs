@@ -90,9 +90,8 @@ impl OperatorError {
                 refusal::OTHER_SOURCES,
             ),
             // Whatever it was, the leg was well commanded: the next point of a path, or what waited for its turn.
-            Self::Refused(asked, HostRefusal::Command(CommandRefusal::Superseded)) => {
-                let superseded = HostRefusal::Command(CommandRefusal::Superseded);
-                let [reason, remedy] = refusal::description(&superseded);
+            Self::Refused(asked, superseded @ HostRefusal::Command(CommandRefusal::Superseded)) => {
+                let [reason, remedy] = refusal::description(superseded);
                 Failure::failed(format!("the leg did not {asked}: {reason}"), remedy)
             }
             Self::Refused(asked, refusal) => {

@@ -13,7 +13,7 @@ use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
 /// How long a leg that another host has relax, or that starts, may stand still before it is waited for no longer.
-const STILL_TIME: Duration = Duration::from_secs(60);
+const FOREIGN_STILL_TIME: Duration = Duration::from_secs(60);
 
 /// Whoever left the load out may not be there any more. It comes before the leg is active: one that begins with its load left out goes to where it would
 /// be without.
@@ -127,9 +127,10 @@ impl Operator {
 
     /// Waits while the leg starts or relaxes; refuses a leg with a fault.
     pub(super) fn settle_state(&mut self, asked: &'static str) -> Result<(), OperatorError> {
-        let telemetry = self.wait_while_moving("come to rest", STILL_TIME, |telemetry| {
-            !matches!(telemetry.state, State::Boot | State::RampingDown)
-        })?;
+        let telemetry =
+            self.wait_while_moving("come to rest", FOREIGN_STILL_TIME, |telemetry| {
+                !matches!(telemetry.state, State::Boot | State::RampingDown)
+            })?;
         let faults = telemetry.faults.stopping();
         if faults.any() {
             return Err(OperatorError::Faulted(asked, faults));

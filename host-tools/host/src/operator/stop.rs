@@ -131,6 +131,10 @@ impl Operator {
     ) -> Result<Telemetry<f32>, OperatorError> {
         let mut moved = (self.now(), [f32::MAX; 3]);
         self.poll(asked, LONGEST_TIME, |now, telemetry| {
+            // However long this machine took to look.
+            if done(telemetry) {
+                return Ok(true);
+            }
             let pulled_m = telemetry.pulled_m;
             let mut pairs = pulled_m.iter().zip(&moved.1);
             if pairs.any(|(pulled, before)| (pulled - before).abs() > STILL_M) {
@@ -139,7 +143,7 @@ impl Operator {
                 let telemetry = Box::new(*telemetry);
                 return Err(OperatorError::TimedOut(asked, still, telemetry));
             }
-            Ok(done(telemetry))
+            Ok(false)
         })
     }
 

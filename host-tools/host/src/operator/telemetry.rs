@@ -97,19 +97,6 @@ impl Operator {
         }
     }
 
-    /// Polls telemetry until `done` says so, for `timeout` at most.
-    ///
-    /// # Errors
-    /// [`OperatorError::TimedOut`] after `timeout`; as [`Self::command`].
-    pub fn wait_until(
-        &mut self,
-        asked: &'static str,
-        timeout: Duration,
-        mut done: impl FnMut(&Telemetry<f32>) -> bool,
-    ) -> Result<Telemetry<f32>, OperatorError> {
-        self.poll(asked, timeout, |_, telemetry| Ok(done(telemetry)))
-    }
-
     /// Polls telemetry until `done`, by the time and the telemetry, says so or fails.
     pub(super) fn poll(
         &mut self,
