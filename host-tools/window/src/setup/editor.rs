@@ -243,11 +243,16 @@ impl Editor {
         control_settings::settings(rig, &rig.gains, None)
     }
 
+    /// What the file says.
+    #[must_use]
+    pub const fn rig(&self) -> &RigFile {
+        &self.now.rig
+    }
+
     /// Counts of each encoder in a turn of its motor.
     #[must_use]
     pub fn counts_per_turn(&self) -> [f64; 3] {
-        self.now
-            .rig
+        self.rig()
             .actuators
             .map(|actuator| actuator.counts_per_turn)
     }

@@ -8,6 +8,7 @@ use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use egui::{Label, RichText, ScrollArea, Spinner, Ui};
+use leg_rig::number::plain;
 use leg_rig::tune::{certain_values, plan_text, table};
 
 pub(super) fn show(ui: &mut Ui, tune: &mut Tune, editor: &mut Editor, leg: &mut ShownLeg) {
@@ -26,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, tune: &mut Tune, editor: &mut Editor, leg: &mut 
         );
     }
     match tune.step() {
-        TuneStep::Choose => choose(ui, tune, leg),
+        TuneStep::Choose => choose(ui, tune, editor, leg),
         TuneStep::Measuring => measuring(ui, tune, leg),
         TuneStep::Done(outcome) => {
             let outcome = outcome.clone();
@@ -35,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, tune: &mut Tune, editor: &mut Editor, leg: &mut 
     }
 }
 
-fn choose(ui: &mut Ui, tune: &mut Tune, leg: &mut ShownLeg) {
+fn choose(ui: &mut Ui, tune: &mut Tune, editor: &Editor, leg: &mut ShownLeg) {
     tune.ask_supply(leg);
     sentence(ui, 1, "Which motor, and is the leg to swing, too?");
     ui.horizontal_wrapped(|ui| {
@@ -53,6 +54,7 @@ fn choose(ui: &mut Ui, tune: &mut Tune, leg: &mut ShownLeg) {
             ui,
             "The motor alone: a page hears too few reports of a live leg to see it swing. `leg tune` measures that.",
         );
+        faint(ui, &gear_words(tune.motor, editor));
     }
     sentence(
         ui,
@@ -76,8 +78,22 @@ fn choose(ui: &mut Ui, tune: &mut Tune, leg: &mut ShownLeg) {
         .or((!free).then_some("Take the payload off first."))
         .or(plan.is_none().then_some("Wait until the supply is known."));
     if button(ui, "Measure it", "tune_start", why).clicked() {
-        tune.start(leg);
+        tune.start(leg, editor.rig());
     }
+}
+
+/// By which gear and screw the constants of a motor are told: no board has them.
+fn gear_words(motor: u8, editor: &Editor) -> String {
+    let own = usize::from(motor).saturating_sub(1);
+    let actuators = &editor.rig().actuators;
+    actuators.get(own).map_or_else(String::new, |actuator| {
+        format!(
+            "Its constants are told by gear_ratio {} and lead_m {} in [actuator] of {}: set those of the leg first, no board has them.",
+            plain(actuator.gear_ratio),
+            plain(actuator.lead_m),
+            editor.name()
+        )
+    })
 }
 
 fn measuring(ui: &mut Ui, tune: &mut Tune, leg: &mut ShownLeg) {

@@ -40,6 +40,14 @@ pub enum TuneStep {
     Done(Outcome),
 }
 
+/// Which rigs a measurement goes by.
+struct Rigs {
+    /// By which the leg is driven.
+    of_leg: RigFile,
+    /// With which it is compared.
+    set: RigFile,
+}
+
 /// The measurement under way.
 struct Work(Pin<Box<dyn Future<Output = Outcome>>>);
 
@@ -126,8 +134,8 @@ impl Tune {
         }
     }
 
-    /// Begins.
-    pub fn start(&mut self, leg: &ShownLeg) {
+    /// Begins. What is measured is compared with what is set: a board knows neither the gear nor the screw that the settings give.
+    pub fn start(&mut self, leg: &ShownLeg, set: &RigFile) {
         let Some((jogs, swing)) = self.plan(leg) else {
             return;
         };
@@ -135,7 +143,11 @@ impl Tune {
         self.seen = Rc::default();
         self.tick = None;
         let page_leg = PageLeg::new(self.mailbox.clone(), &settings(leg.rig()));
-        let work = measure(page_leg, jogs, swing, *leg.rig(), self.seen.clone());
+        let rigs = Rigs {
+            of_leg: *leg.rig(),
+            set: *set,
+        };
+        let work = measure(page_leg, jogs, swing, rigs, self.seen.clone());
         self.work = Some(Work(Box::pin(work)));
         self.step = TuneStep::Measuring;
     }
@@ -196,7 +208,7 @@ async fn measure(
     mut leg: PageLeg,
     jogs: JogPlan,
     swing: Option<SwingPlan>,
-    rig: RigFile,
+    rigs: Rigs,
     seen: Rc<RefCell<String>>,
 ) -> Outcome {
     let motor = jogs.motor;
@@ -205,7 +217,7 @@ async fn measure(
         "Motor {motor} pays its tendon out until it is slack."
     ));
     let jogged = &mut |jogged: &Jogged| note(jogged_words(motor, jogged));
-    let measured = measure_motor(&mut leg, &jogs, &settings(&rig), jogged).await;
+    let measured = measure_motor(&mut leg, &jogs, &settings(&rigs.of_leg), jogged).await;
     let measured = match measured {
         Ok(measured) => measured,
         Err(error) => {
@@ -224,21 +236,21 @@ async fn measure(
     let Some(plan) = swing else {
         return Outcome {
             motor,
-            rows: comparison(&measured, None, &rig),
+            rows: comparison(&measured, None, &rigs.set),
             servo_finding,
             failure: None,
         };
     };
     note("The leg is homed, and its pretension changed.".into());
     let swung = &mut |swing: &Swing| note(swing_words(swing));
-    let (swings, failure) = match measure_swing(&mut leg, &plan, &rig, swung).await {
+    let (swings, failure) = match measure_swing(&mut leg, &plan, &rigs.of_leg, swung).await {
         Ok(swings) => (Some(swings), None),
         Err(error) => (None, Some(error.failure().render(false))),
     };
     // The motor may be why, as one with more friction than is configured: what it is must not be lost.
     Outcome {
         motor,
-        rows: comparison(&measured, swings.as_ref(), &rig),
+        rows: comparison(&measured, swings.as_ref(), &rigs.set),
         servo_finding,
         failure,
     }
@@ -265,14 +277,21 @@ fn swing_words(swing: &Swing) -> String {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{Outcome, Tune, TuneStep};
+    use crate::setup::editor::Editor;
     use crate::shown_leg::ShownLeg;
     use crate::simulation::Simulation;
     use leg_firmware::command::Command;
     use leg_firmware::supervisor::State;
+    use leg_rig::actuator::ACTUATOR;
     use leg_sim::plant::Defect;
 
     /// A disarmed leg, and the measurement of a motor that has begun.
     fn begun(swings: bool) -> (ShownLeg, Tune) {
+        begun_with(swings, &[])
+    }
+
+    /// The same beside settings in which some are changed.
+    fn begun_with(swings: bool, changes: &[(&str, &str)]) -> (ShownLeg, Tune) {
         let mut leg = ShownLeg::Simulated(Box::new(Simulation::new().unwrap()));
         leg.command(Command::Disarm, "disarm");
         while leg.state() != State::Disarmed {
@@ -290,7 +309,11 @@ mod tests {
             tune.ask_supply(&mut leg);
             leg.advance(0.02, 0.0);
         }
-        tune.start(&leg);
+        let mut editor = Editor::new(leg.source()).unwrap();
+        for (key, value) in changes {
+            assert!(editor.set(ACTUATOR, key, value), "{:?}", editor.refused());
+        }
+        tune.start(&leg, editor.rig());
         (leg, tune)
     }
 
@@ -331,6 +354,22 @@ mod tests {
             leg.advance(0.02, 0.0);
         }
         assert_eq!(leg.state(), State::Held);
+    }
+
+    /// A board knows how far its tendons go for a count, and no gear: the constants are told by the gear that is set.
+    #[test]
+    fn constants_are_told_by_the_gear_that_is_set() {
+        let torque_constant = |changes: &[(&str, &str)]| {
+            let (mut leg, mut tune) = begun_with(false, changes);
+            let outcome = go_on(&mut leg, &mut tune, 400.0).unwrap();
+            assert_eq!(outcome.failure, None);
+            let rows = outcome.rows.iter();
+            let mut found = rows.filter(|row| row.name == "torque_constant_nm_per_a");
+            found.next().unwrap().measured.value
+        };
+        let own = torque_constant(&[]);
+        let others = torque_constant(&[("gear_ratio", "8.8")]);
+        assert!((others / own - 0.5).abs() < 0.02, "{own} {others}");
     }
 
     #[test]
