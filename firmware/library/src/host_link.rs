@@ -320,7 +320,8 @@ impl Service {
             command,
             Command::Arm | Command::Home | Command::Jog(_) | Command::Clear
         );
-        let follows = leg.state().follows();
+        // What sets it in motion may wait until it stands: what another sent meanwhile would be executed after it.
+        let follows = leg.state().follows() || matches!(self.waiting, Waiting::Begin(_));
         if follows && !ends && self.driver.is_some_and(|driver| driver != host) {
             return Err(HostRefusal::OtherHost);
         }

@@ -20,7 +20,7 @@ fn text(actuator: &str) -> String {
 }
 
 const WORK: &str = "title = \"other motors\"\nseed = 6\nsteps = [ { await = { state = \"disarmed\", timeout_s = 1 } }, \"home\", \
-                    { await = { state = \"active\", timeout_s = 150 } }, { wait_s = 3 }, \
+                    { await = { state = \"active\", timeout_s = 300 } }, { wait_s = 3 }, \
                     { move = { azimuth_deg = 30, tilt_deg = 15 } }, { arrive = { then_s = 2, timeout_s = 60 } }, \
                     { measure = { name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.1] } }, \
                     { pretension_n = 100 }, { wait_s = 2 }, \
@@ -90,6 +90,14 @@ fn a_leg_works_with_what_its_motors_data_sheets_say() {
         })
         .collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// It starts and brakes as fast as it can all the same.
+#[test]
+fn a_leg_works_whose_motors_are_set_to_be_slow() {
+    let slow = text("[control.servo]\nspeed_m_per_s = 1e-3\n");
+    let rig = RigFile::parse("slow", &slow).unwrap();
+    work("slow", &rig).unwrap();
 }
 
 /// Copper has 25 % more resistance when it is 65 °C warmer: the motor draws that much less than its voltage drives by the file.

@@ -113,7 +113,15 @@ fn check_limits(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
 
     let slack = ("control.limits.slack_n", decimal(limits.slack_n));
     let reason = "else a tendon at the minimum tension is taken as slack";
-    check_below(slack, ("tendon.f_min_n", file.f_min_n), reason, root)
+    check_below(slack, ("tendon.f_min_n", file.f_min_n), reason, root)?;
+
+    let homing = &file.gains.homing;
+    let touch = ("control.homing.touch_n", decimal(homing.touch_n));
+    let ceiling = ("control.homing.f_max_n", decimal(homing.f_max_n));
+    let reason = "else no tendon is found taut while homing";
+    check_below(touch, ceiling, reason, root)?;
+    let reason = "else homing pulls more than the tendons bear";
+    check_at_most(ceiling, ("tendon.f_max_n", file.f_max_n), reason, root)
 }
 
 /// The same of what a motor, from 0, may have for itself.
@@ -127,7 +135,22 @@ fn check_motor_limits(file: &RigFile, motor: usize, root: &Section<'_>) -> Resul
 
     let cell_range = (cells.as_str(), actuator.cell_range_n[1]);
     let reason = "else no load cell sees too much tension";
-    check_below(("tendon.f_max_n", file.f_max_n), cell_range, reason, root)
+    check_below(("tendon.f_max_n", file.f_max_n), cell_range, reason, root)?;
+
+    let servo = own("control.servo.speed_m_per_s");
+    let fastest = (
+        servo.as_str(),
+        decimal(file.gains.servos[motor].speed_m_per_s),
+    );
+    let homing = (
+        "control.homing.speed_m_per_s",
+        decimal(file.gains.homing.speed_m_per_s),
+    );
+    let reason = "else a motor that homes is faster than its servo may be";
+    check_at_most(homing, fastest, reason, root)?;
+    let ramp = ("control.limits.ramp_m_per_s", decimal(limits.ramp_m_per_s));
+    let reason = "else a motor that relaxes its tendon is faster than its servo may be";
+    check_at_most(ramp, fastest, reason, root)
 }
 
 /// Refuses a servo that drives more than the limit, at the smallest range of a current sensor where neither is given: that bounds
@@ -212,12 +235,112 @@ fn check_below(
     if low.1 < high.1 {
         return Ok(());
     }
+    Err(disordered([low, high], "has to be below", reason, root))
+}
+
+/// The same of a first value that may be the second one.
+fn check_at_most(
+    low: (&str, f64),
+    high: (&str, f64),
+    reason: &str,
+    root: &Section<'_>,
+) -> Result<(), TomlError> {
+    if low.1 <= high.1 {
+        return Ok(());
+    }
+    Err(disordered([low, high], "has to be at most", reason, root))
+}
+
+/// What is wrong with two values, each with the path of its key; at the place of the second one, or of the first where that is not given.
+fn disordered(pair: [(&str, f64); 2], order: &str, reason: &str, root: &Section<'_>) -> TomlError {
     let place = |path: &str| root.place(&path.split('.').collect::<Vec<_>>());
-    let span = place(high.0).or(place(low.0)).unwrap_or(0..0);
-    let [low, high] = [low, high].map(|(path, value)| format!("`{path}` ({})", plain(value)));
-    Err(TomlError::new(
-        span,
-        format!("{low} has to be below {high}"),
+    let [low, high] = pair.map(|(path, _)| place(path));
+    let [lower, higher] = pair.map(|(path, value)| format!("`{path}` ({})", plain(value)));
+    TomlError::new(
+        high.or(low).unwrap_or(0..0),
+        format!("{lower} {order} {higher}"),
         reason,
-    ))
+    )
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use crate::ready_rigs::READY_RIGS;
+    use crate::rig_file::RigFile;
+
+    /// Each is refused with both values, at one that is given; what is just good enough is taken.
+    #[test]
+    fn limits_that_contradict_each_other_are_refused() {
+        for (section, key, bad, good, words) in [
+            (
+                "control.limits",
+                "supply_min_v",
+                "24",
+                "23.9",
+                "`control.limits.supply_min_v` (24) has to be below `actuator.supply_v` (24)",
+            ),
+            (
+                "control.limits",
+                "supply_max_v",
+                "24",
+                "24.1",
+                "`actuator.supply_v` (24) has to be below `control.limits.supply_max_v` (24)",
+            ),
+            (
+                "control.limits",
+                "temperature_c",
+                "160",
+                "159",
+                "`control.limits.temperature_c` (160) has to be below",
+            ),
+            (
+                "control.limits",
+                "slack_n",
+                "8",
+                "7.9",
+                "`control.limits.slack_n` (8) has to be below `tendon.f_min_n` (8)",
+            ),
+            (
+                "control.homing",
+                "touch_n",
+                "15",
+                "14.9",
+                "`control.homing.touch_n` (15) has to be below `control.homing.f_max_n` (15)",
+            ),
+            (
+                "control.homing",
+                "f_max_n",
+                "151",
+                "150",
+                "`control.homing.f_max_n` (151) has to be at most `tendon.f_max_n` (150)",
+            ),
+            (
+                "control.homing",
+                "speed_m_per_s",
+                "0.031",
+                "0.03",
+                "`control.homing.speed_m_per_s` (0.031) has to be at most `control.servo.speed_m_per_s` (0.03)",
+            ),
+            (
+                "control.limits",
+                "ramp_m_per_s",
+                "0.031",
+                "0.03",
+                "`control.limits.ramp_m_per_s` (0.031) has to be at most `control.servo.speed_m_per_s` (0.03)",
+            ),
+        ] {
+            let text = |value| format!("{}\n[{section}]\n{key} = {value}\n", READY_RIGS[0].text);
+            let Err(error) = RigFile::parse("a.toml", &text(bad)) else {
+                panic!("{key} = {bad} is accepted");
+            };
+            let shown = error.render(false);
+            let given = format!("{key} = {bad}");
+            let found = |at: &&str| shown.contains(at);
+            let places = ["f_min_n = ", "f_max_n = 150", &given];
+            assert!(shown.contains(words), "{shown}");
+            assert!(places.iter().any(found), "{shown}");
+            RigFile::parse("a.toml", &text(good)).unwrap();
+        }
+    }
 }

@@ -109,6 +109,32 @@ fn who_only_speaks_does_not_take_the_leg_over() {
     }
 }
 
+/// A leg that brakes executes nothing before it stands: neither is what another host sends meanwhile executed after what the first one sent.
+#[test]
+fn a_second_host_is_refused_while_what_the_first_begins_waits() {
+    for begin in [Command::Arm, Command::Home, Command::Clear] {
+        for other in [MOVE, Command::KeepAlive, Command::Clear] {
+            let mut line = followed(State::Held);
+            let number = line.command(ONE, begin);
+            let request = HostRequest::Command {
+                host: OTHER,
+                command: other,
+            };
+            assert_eq!(line.ask(&request), refused(HostRefusal::OtherHost));
+            assert_eq!(line.leg.waiting, [(number, begin)]);
+            // Once that was refused, the leg follows nobody.
+            line.leg.result = Err(CommandRefusal::NotHomed);
+            line.tick();
+            assert_eq!(
+                line.heard(),
+                [(number, not_obeyed(CommandRefusal::NotHomed))]
+            );
+            line.leg.result = Ok(());
+            assert_eq!(line.obey(OTHER, other), HostReply::Done);
+        }
+    }
+}
+
 #[test]
 fn any_host_may_stop_or_disarm_and_does_not_drive_by_that() {
     for end in [Command::Stop, Command::Disarm] {

@@ -28,6 +28,10 @@ const PAYING_OUT_AWAY_PART: f32 = 0.9;
 /// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
 const STEP_PART: f32 = 0.9;
 
+/// The least of that, m: a motor that is set to be slow starts and brakes as fast as it can all the same. With 0.1 µm one that was set to 1 mm/s was
+/// taken for a counter that jumps.
+const STEP_MIN_M: f32 = 3e-6;
+
 /// The same in counts where these are coarse: a motor that starts counts one at once.
 const STEP_COUNTS: f32 = 1.5;
 
@@ -145,7 +149,9 @@ impl<T: Scalar> AxisMonitor<T> {
                 tension_n: T::from(f_max_n + limits.over_tension_part * f_max_n),
                 jump_n: limits.jump_n.into(),
                 step_m: T::from(
-                    (STEP_PART * servo.speed_m_per_s * TICK_S).max(STEP_COUNTS * m_per_count.abs()),
+                    (STEP_PART * servo.speed_m_per_s * TICK_S)
+                        .max(STEP_MIN_M)
+                        .max(STEP_COUNTS * m_per_count.abs()),
                 ),
                 following_m: limits.following_m.into(),
                 away_m: T::from(AWAY_PART * limits.following_m),
