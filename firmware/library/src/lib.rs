@@ -64,6 +64,7 @@
 //! | residual | what forward kinematics leaves of the three lengths, m |
 //! | excess | load beyond the leg's own weight, as a horizontal moment, N·m |
 //! | suspect cells | load cells that may be the cause of a latched fault: a held leg does not move by them |
+//! | arm, armed | lets the leg follow commands: the state active |
 //! | latched | said of a fault until it is cleared |
 //! | limit, hold, ramp down, gate off | reactions to a fault, from the mildest to the most severe |
 #![cfg_attr(not(test), no_std)]

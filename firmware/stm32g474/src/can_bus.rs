@@ -32,8 +32,9 @@ bind_interrupts!(struct Interrupts {
 /// A CAN frame that the bus does not take in this time is given up, with the link frame that it belongs to.
 const SEND_TIME: Duration = Duration::from_millis(20);
 
-/// 170 MHz / 170 = 1 Mbit/s, sampled at 80 %.
-const NOMINAL: [u8; 3] = [135, 34, 34];
+/// 170 MHz / 170 = 1 Mbit/s, sampled at 75.3 %: `leg_firmware::can::SAMPLE_POINT_PERMILLE`. A host that samples at 75 % ends the bit in which it
+/// changes the rate after 800 ns: at 80 % the board would read it there.
+const NOMINAL: [u8; 3] = [127, 42, 42];
 
 /// 170 MHz / 34 = 5 Mbit/s, sampled at 76 %.
 const DATA: [u8; 3] = [25, 8, 8];

@@ -1,13 +1,15 @@
 //! 170 MHz from the board's 24 MHz crystal.
 
+use crate::fatal;
 use embassy_stm32::pac::flash::vals::Latency;
 use embassy_stm32::pac::timer::vals::Urs;
 use embassy_stm32::rcc::mux::{Adcsel, Fdcansel, Uartsel};
 use embassy_stm32::rcc::{
-    AHBPrescaler, Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk,
+    AHBPrescaler, Hse, HseMode, LsConfig, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk,
 };
 use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, Peripherals, pac, rcc};
+use leg_firmware::board::ShortText;
 use leg_firmware::board::timing::{CLOCK_HZ, TASK_TIMER_HZ};
 
 /// PWR_CR5.R1MODE, set for the normal voltage of range 1, clear for the boosted one: bit 8 by RM0440 and by ST's own
@@ -20,6 +22,12 @@ const WAIT_STATES: Latency = Latency::WS4;
 /// Cycles at half of the full clock that are at least the microsecond for which RM0440 asks there.
 const PAUSE_CYCLES: u32 = CLOCK_HZ / 2 / 1_000_000;
 
+/// How long the crystal may take to start, in steps of a millisecond at least: its maker gives 10 ms.
+const CRYSTAL_STEPS: u32 = 100;
+
+/// Cycles of the 16 MHz at which the chip starts that are a millisecond at least.
+const CRYSTAL_STEP_CYCLES: u32 = 16_000;
+
 /// What TIM15, by which embassy's tasks wait, divides the full clock by.
 const TASK_TIMER_DIVISOR: u16 = (CLOCK_HZ / TASK_TIMER_HZ) as u16;
 
@@ -29,11 +37,35 @@ const _: () = assert!(embassy_time::TICK_HZ == TASK_TIMER_HZ as u64);
 ///
 /// `init` resets PWR, and so its boost: it leaves the chip at 16 MHz. Above 150 MHz the voltage has to be boosted before.
 pub fn start() -> Peripherals {
-    let mut peripherals = embassy_stm32::init(Config::default());
+    let mut config = Config::default();
+    config.rcc.ls = LsConfig::off();
+    let mut peripherals = embassy_stm32::init(config);
+    reset_backup_domain();
+    start_crystal();
     pac::PWR.cr5().modify(|w| w.0 &= !R1MODE);
     rcc::reinit(half_speed(), &mut peripherals.RCC);
     double_speed();
     peripherals
+}
+
+/// Nothing of the backup domain is used, and a short dip of the supply may leave anything in it: by ST's errata of this family an RTC that runs from LSI
+/// makes LSI, and so the independent watchdog, faster than specified, and a clock output on PA2 would take the serial line's pin.
+fn reset_backup_domain() {
+    pac::PWR.cr1().modify(|w| w.set_dbp(true));
+    pac::RCC.bdcr().modify(|w| w.set_bdrst(true));
+    pac::RCC.bdcr().modify(|w| w.set_bdrst(false));
+}
+
+/// embassy waits for the crystal without an end, and no watchdog runs yet.
+fn start_crystal() {
+    pac::RCC.cr().modify(|w| w.set_hseon(true));
+    for _ in 0..CRYSTAL_STEPS {
+        if pac::RCC.cr().read().hserdy() {
+            return;
+        }
+        cortex_m::asm::delay(CRYSTAL_STEP_CYCLES);
+    }
+    fatal::end(&ShortText::new("the crystal does not start"));
 }
 
 /// 24 MHz / 6 × 85 / 2 = 170 MHz for the converters and the serial line, and half of it for processor and buses.
@@ -43,6 +75,7 @@ pub fn start() -> Peripherals {
 /// frequency it knows, and CAN is given its bit timing in cycles. [`double_speed`] mends the timer of embassy's tasks.
 fn half_speed() -> rcc::Config {
     let mut config = rcc::Config::default();
+    config.ls = LsConfig::off();
     config.hse = Some(Hse {
         freq: Hertz::mhz(24),
         mode: HseMode::Oscillator,

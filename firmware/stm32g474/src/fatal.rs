@@ -1,6 +1,6 @@
 //! What happens when nothing can go on: first the outputs are switched off, then the cause is kept over a reset.
 
-use crate::{clocks, power, tick_watchdog};
+use crate::{clocks, flash, power, tick_watchdog};
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use core::ptr;
@@ -159,9 +159,5 @@ unsafe fn NonMaskableInt() {
     if !found || !ecc.bk_ecc() || ecc.sysf_ecc() {
         end(&ShortText::new("NMI, flash ECC ").hex(ecc.0));
     }
-    // Ones clear the flags.
-    pac::FLASH.eccr().modify(|w| {
-        w.set_eccd(true);
-        w.set_eccd2(true);
-    });
+    flash::forget_ecc_errors();
 }

@@ -35,6 +35,15 @@ impl CheckedFlash {
         }
     }
 
+    /// Reads with a register of ECC errors that has forgotten what was before, and forgets what it finds: RM0440, FLASH_ECCR keeps the place of the first
+    /// error, a corrected one, too, until its flags are cleared, and the NMI tells by that place what was read.
+    fn read_anew(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
+        forget_ecc_errors();
+        let read = self.0.blocking_read(offset, bytes);
+        forget_ecc_errors();
+        read
+    }
+
     /// Compares the flash from `offset` on with `expected`.
     fn compare<'a>(
         &mut self,
@@ -43,13 +52,23 @@ impl CheckedFlash {
     ) -> Result<(), Error> {
         let mut found = [0; WORD_SIZE];
         for (at, word) in (offset..).step_by(WORD_SIZE).zip(expected) {
-            self.0.blocking_read(at, &mut found)?;
+            self.read_anew(at, &mut found)?;
             if found.get(..word.len()) != Some(word) {
                 return Err(Error::Prog);
             }
         }
         Ok(())
     }
+}
+
+/// Clears the flags of ECC errors: ones clear them.
+pub fn forget_ecc_errors() {
+    pac::FLASH.eccr().modify(|w| {
+        w.set_eccc(true);
+        w.set_eccd(true);
+        w.set_eccc2(true);
+        w.set_eccd2(true);
+    });
 }
 
 impl ErrorType for CheckedFlash {
@@ -60,7 +79,7 @@ impl ReadNorFlash for CheckedFlash {
     const READ_SIZE: usize = <Flash<'static, Async> as ReadNorFlash>::READ_SIZE;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
-        self.0.blocking_read(offset, bytes)
+        self.read_anew(offset, bytes)
     }
 
     fn capacity(&self) -> usize {

@@ -16,7 +16,8 @@
 //! - that a debugger's halt switches the timer's outputs off at once; that it resets the chip of a driven leg is shown;
 //! - what the write protection of the CCM makes of a write, which the MPU refuses before it;
 //! - what RAM keeps over a real reset or a dip of the supply, and how a real flash behaves after a cut;
-//! - whether a driver needs time between its enable and its first pulse.
+//! - whether a driver needs time between its enable and its first pulse;
+//! - what the driver's fault line does while it sleeps and for 1 ms after its enable: the kit's driver has no enable but SLP.
 #![no_std]
 #![no_main]
 

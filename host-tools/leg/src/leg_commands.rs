@@ -19,7 +19,8 @@ use std::time::Duration;
 pub(crate) enum LegCommand {
     /// Clears the faults whose cause is gone.
     ///
-    /// A leg in hold stays in hold, one that keeps station goes on; one whose drivers a fault switched off is then disarmed.
+    /// A leg in hold that knows its zero stays in hold. One that does not, as after a stop of its homing, pays its tendons out and is
+    /// disarmed: keep your hands away. One that keeps station goes on; one whose drivers a fault switched off is disarmed then.
     Clear(LegArgs),
     /// Leads the leg straight down, pays its tendons out and switches the drivers off; the screws hold.
     Disarm(LegArgs),
@@ -43,7 +44,10 @@ pub(crate) enum LegCommand {
     Move(MoveArgs),
     /// Changes the bending stiffness of the leg where it is, and lets it keep station.
     Stiffness(StiffnessArgs),
-    /// Stops the leg, whatever else is going on, and leaves it in hold.
+    /// Stops the leg, for any host, and leaves it in hold.
+    ///
+    /// A leg that is disarmed or off stays so, one that jogs is disarmed; a leg that ramps down goes on paying its tendons out until it is
+    /// disarmed: there only the emergency stop ends that.
     ///
     /// The stop is repeated until the leg acknowledges it, and works beside another command that drives the leg, on CAN too.
     Stop(LegArgs),
@@ -177,7 +181,7 @@ fn stretch_line(factor: f32) -> String {
         return String::new();
     }
     format!(
-        "tendons    stretch {factor:.2} times as much as the settings say; measure that with `leg tune`, and see that the load cells are calibrated\n"
+        "tendons    stretch {factor:.2} times as much as the settings say; see that no payload hung on the leg while it homed, that the load cells are calibrated, and measure it with `leg tune`\n"
     )
 }
 

@@ -103,7 +103,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     bridge::run(transport.as_mut(), &pages, hello, host, &cancel).map_err(|error| {
         Failure::failed(
             format!("the connection to {name} is lost: {error}"),
-            "an armed leg is held by itself; look at the cable, and start it again",
+            "look at the cable, and start it again; a leg that homes or follows commands is held by itself, \
+             one that jogs is switched off; one that keeps station goes on and moves by itself",
         )
     })
 }

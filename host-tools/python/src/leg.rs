@@ -33,7 +33,8 @@ use std::time::{Duration, SystemTime};
 /// A leg on a serial port, commanded as by `leg home`, `leg move` and so on; or the same emulated in this process.
 ///
 /// Each call returns at its end, with telemetry. After `move`, `stiffness` and `follow` the leg keeps station; after `home`,
-/// `hold` and `stop`, after Ctrl-C and after an error it is in hold. A leg that hears no more of this program holds by itself.
+/// `hold` and `stop`, after Ctrl-C and after an error it is in hold. One that homes or follows commands, and hears no more of
+/// this program, is held by itself.
 /// Raises LegFault, Refused, LegTimeout, or LegError where the connection fails.
 #[pyclass(frozen, module = "tendon_leg")]
 pub struct Leg {
@@ -192,12 +193,14 @@ impl Leg {
         self.report(py, move |operator| operator.follow_whole(&path, lead))
     }
 
-    /// Holds the leg where it is.
+    /// Brings the leg to the state held, on its screws.
     fn hold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.reach(py, Goal::default())
     }
 
-    /// Stops the leg, which is in hold then. From another thread it ends the call that uses the leg, which raises LegError.
+    /// Stops the leg: it is in hold then. One that is disarmed or off stays so, one that ramps down goes on.
+    ///
+    /// From another thread it ends the call that uses the leg, which raises LegError.
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
         self.ask_at_once(py, Operator::stop).map(|_| ())
     }
@@ -207,7 +210,8 @@ impl Leg {
         self.ask(py, Operator::disarm)
     }
 
-    /// Clears the faults whose cause is gone; the leg is in hold then, or disarmed.
+    /// Clears the faults whose cause is gone. The leg is in hold then, keeps station as before, or is disarmed; one that was held
+    /// without a zero pays its tendons out first.
     fn clear(&self, py: Python<'_>) -> PyResult<()> {
         self.ask(py, Operator::clear)
     }

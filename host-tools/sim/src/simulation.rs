@@ -10,7 +10,7 @@ mod test_stand;
 mod tick_hash;
 
 pub use crate::hosted_leg::Comparison;
-pub use summary::{Sample, ScenarioMeasurement, SimulationError, Summary};
+pub use summary::{RefusedCommand, Sample, ScenarioMeasurement, SimulationError, Summary};
 pub use test_stand::SAMPLE_TICKS;
 pub use tick_hash::TickHash;
 
@@ -134,6 +134,9 @@ impl Simulation {
             }
         };
         let mut summary = stand.summary;
+        if summary.ticks == 0 && stopped.is_none() {
+            return Err(SimulationError::Timeless);
+        }
         let faults = summary.faults.iter().map(|(fault, _)| *fault);
         summary.unexpected = faults
             .filter(|fault| !sequencer.expected.has(*fault))

@@ -33,6 +33,7 @@ impl Default for Board {
             can: CanBus {
                 nominal_hz: 1_000_000,
                 data_hz: 5_000_000,
+                sample_permille: 750,
             },
             seed: 0,
             records_writes: false,

@@ -5,7 +5,7 @@
 //! | [`mod@array`] | the memory |
 //! | [`operation`] | programming and erasing, and what a loss of power leaves of it |
 //!
-//! Not modelled: fast programming, option bytes that change, write and read protection, single wrong bits, caches that
+//! Not modelled: fast programming, option bytes that change, write and read protection, caches that
 //! hold old data.
 
 pub mod array;
@@ -15,7 +15,7 @@ mod places;
 #[cfg(test)]
 mod tests;
 
-use crate::device::{Context, Device, RegisterFile};
+use crate::device::{Context, Device, FieldPlace, RegisterFile};
 use crate::facts::Facts;
 use crate::memory_map::BANK_SIZE;
 use array::{Array, DOUBLE_WORD, SIZE, START, double_word_of};
@@ -132,6 +132,11 @@ impl Flash {
         self.array.damage(address.wrapping_sub(START));
     }
 
+    /// Lets the double word of an address have one wrong bit, which the chip corrects.
+    pub fn weaken(&mut self, address: u32) {
+        self.array.weaken(address.wrapping_sub(START));
+    }
+
     /// The processor reads one, two or four bytes of the memory.
     pub fn read_array(&mut self, address: u32, width: u32, context: &mut Context<'_>) -> u32 {
         let offset = address.wrapping_sub(START);
@@ -141,8 +146,11 @@ impl Flash {
             // The access ends with the operation, and gives what there is then.
             self.settle(self.stall.unwrap_or_default());
         }
+        let flags = &self.flags;
         if self.array.is_damaged(offset) {
-            self.detect_error(offset);
+            self.note_error(offset, [flags.ecc_detected, flags.ecc_detected_above]);
+        } else if self.array.is_weak(offset) {
+            self.note_error(offset, [flags.ecc_corrected, flags.ecc_corrected_above]);
         }
         self.array.value(offset, width)
     }
@@ -202,21 +210,15 @@ impl Flash {
         }
     }
 
-    /// A double word with two wrong bits was read.
-    fn detect_error(&mut self, offset: u32) {
+    /// A double word with wrong bits was read: sets the flag of its half of four words. The place is that of the first error since the flags were
+    /// cleared, a corrected one, too: RM0440, FLASH_ECCR.
+    fn note_error(&mut self, offset: u32, [below, above]: [FieldPlace; 2]) {
         let offset = double_word_of(offset);
-        let flags = &self.flags;
-        let [detected, other] = if self.dual_bank || offset.is_multiple_of(2 * DOUBLE_WORD) {
-            [flags.ecc_detected, flags.ecc_detected_above]
-        } else {
-            [flags.ecc_detected_above, flags.ecc_detected]
-        };
-        if self.registers.is_set(detected) {
-            return;
-        }
-        let first = !self.registers.is_set(other);
-        self.registers.set_value(detected, 1);
-        if !first {
+        let both_alike = self.dual_bank || offset.is_multiple_of(2 * DOUBLE_WORD);
+        let flag = if both_alike { below } else { above };
+        let before = self.registers.get(self.offsets.eccr) & self.flags.ecc_clearable;
+        self.registers.set_value(flag, 1);
+        if before != 0 {
             return;
         }
         let bank_2 = self.dual_bank && offset >= BANK_SIZE;

@@ -382,7 +382,7 @@ impl LiveLeg {
     pub fn failure(&self) -> Option<String> {
         if let Some(why) = &self.lost {
             return Some(format!(
-                "The connection is lost: {why}. An armed leg is held by itself."
+                "The connection is lost: {why}. A leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps station goes on and moves by itself."
             ));
         }
         let silent = self.now_s - self.heard_s.unwrap_or(self.now_s) > SILENCE_S;

@@ -77,7 +77,7 @@ const CHOICES: [Choice; 5] = [
     Choice {
         name: "disarm",
         text: "Disarm",
-        effect: "slackens the tendons, switches the drivers off",
+        effect: "leads it straight down, slackens the tendons, switches the drivers off",
         command: Command::Disarm,
         useful: |leg| {
             let state = leg.state();
@@ -150,7 +150,7 @@ fn compensation(ui: &mut Ui, leg: &mut ShownLeg) {
     place(&toggle, "compensation");
     let clicked = toggle.clicked();
     why(toggle, locked).on_hover_text(match on {
-        Some(_) => "The leg feels the load in its tendons, and holds its target under it.",
+        Some(_) => "The leg estimates the load from its tendons' tensions, and brings the tip back to its target.",
         None => "A leg does not report whether it does: a press switches it on.",
     });
     if !clicked {

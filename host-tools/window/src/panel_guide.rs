@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
         GuideStep {
             number: 2,
             action: ["Switch compensation on", "guide_compensation"],
-            effect: "The leg feels the load, and lifts it back to the target.",
+            effect: "The leg estimates the load from its tendons' tensions, and brings the tip back to its target.",
             done: simulation.compensated(),
         },
         GuideStep {

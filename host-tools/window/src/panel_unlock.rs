@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, leg: &mut LiveLeg) {
         let clicked = switch.clicked();
         switch
             .on_hover_text(
-                "This page then drives a real machine: nobody may reach into it. Locked again, an armed leg is held by itself.",
+                "This page then drives a real machine: nobody may reach into it. Locked again, a leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps station goes on and moves by itself.",
             )
             .on_disabled_hover_text("One page drives at a time, while the leg answers.");
         if clicked {

@@ -143,6 +143,45 @@ fn damage_page(chip: &mut Chip, page: usize) -> Outcome {
     Ok(())
 }
 
+/// The register of ECC errors keeps the place of the first one, a corrected one, too: where a wrong bit was corrected before, what is wrong among the settings is not taken
+/// for the program, nor what is wrong in the program for the settings.
+#[test]
+fn a_corrected_bit_hides_no_place() -> Outcome {
+    let mut session = started(40)?;
+    let chip = session.chip().ok_or("no chip")?;
+    identity(chip)?;
+    carry_out(chip, &HostRequest::SaveSettings)?;
+    for page in 0..2 {
+        damage_page(chip, page)?;
+    }
+    chip.reset(ResetFlag::Pin);
+    chip.peripherals().devices.flash.weaken(PROGRAM);
+    chip.peripherals().read_flash(PROGRAM, 4);
+    let identity = identity_after(chip)?;
+    assert_eq!(
+        (identity.reset, identity.crash_report.as_str()),
+        (ResetCause::Pin, "")
+    );
+    assert!(telemetry(chip)?.faults.has(Fault::SettingsCorrupt));
+
+    let mut session = started(40)?;
+    let chip = session.chip().ok_or("no chip")?;
+    identity_after(chip)?;
+    carry_out(chip, &HostRequest::SaveSettings)?;
+    chip.peripherals()
+        .devices
+        .flash
+        .weaken(SETTINGS_PLACE.start + 16);
+    chip.reset(ResetFlag::Pin);
+    identity_after(chip)?;
+    chip.peripherals().devices.flash.damage(PROGRAM);
+    chip.peripherals().read_flash(PROGRAM, 4);
+    assert_eq!(reset_within(chip, MS), Some(ResetFlag::Software));
+    let report = identity_after(chip)?.crash_report;
+    assert!(report.starts_with("NMI, flash ECC "), "{report}");
+    Ok(())
+}
+
 /// A break of the chip itself while nothing is driven, as by a damaged word among the settings, is no fault of the drivers.
 #[test]
 fn a_system_break_of_a_leg_that_is_off_raises_no_fault() -> Outcome {

@@ -335,7 +335,7 @@ fn no_points_lead_the_true_leg_beyond_its_limits() {
         "host-tools/docs/commanding-a-leg.md",
         &[
             format!(
-                "by {BEYOND_DEG}° of tilt and {:.0} % of acceleration",
+                "tilt by more than {BEYOND_DEG}° and of acceleration by more than {:.0} %",
                 100.0 * (ACCELERATION_PART - 1.0)
             ),
             format!("{FIRST_ACCELERATION_PART} times that limit in the first half a second"),

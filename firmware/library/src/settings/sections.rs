@@ -120,7 +120,7 @@ fields! {
         supply_min_v ["V"]: 0.0..=1e3 = 18.0;
         /// Highest supply.
         supply_max_v ["V"]: 0.0..=1e3 = 30.0;
-        /// Longest silence of the host while armed.
+        /// Longest silence of the host while the leg homes, follows commands or jogs.
         command_time_s ["s"]: 1.25e-4..=100.0 = 0.2;
         /// Frames that could not be read before the link is a fault.
         bad_frames ["1"]: 1.0..=1e3 = 3.0;

@@ -181,15 +181,15 @@ faults! {
     17 SupplyLow {
         name: "supply too low",
         reaction: Hold,
-        cause: "the supply is below supply_min_v",
-        remedy: "check supply and battery",
+        cause: "while the drivers are on, the supply is below supply_min_v or the board's own 3.3 V are too low",
+        remedy: "check the motor supply, its contactor and fuses, and the board's 3.3 V",
         clears: Command,
     }
     18 SupplyHigh {
         name: "supply too high",
         reaction: Hold,
-        cause: "the supply is above supply_max_v",
-        remedy: "check the supply; a braking motor feeds back into it",
+        cause: "the supply is above supply_max_v, or the board's own 3.3 V are too high",
+        remedy: "check the supply and the board's 3.3 V; a braking motor feeds back into the supply",
         clears: Command,
     }
     19 LateTick {
@@ -202,7 +202,7 @@ faults! {
     20 CommandTimeout {
         name: "no command",
         reaction: Hold,
-        cause: "the host is silent for command_time_s while the leg is armed",
+        cause: "the host is silent for command_time_s while the leg homes, follows commands or jogs",
         remedy: "check the link and the host: it has to speak more often",
         clears: Command,
     }

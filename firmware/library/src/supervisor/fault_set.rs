@@ -158,6 +158,20 @@ mod tests {
         }
     }
 
+    /// As the page on the protocol says: fault n is bit n.
+    #[test]
+    fn a_fault_is_the_bit_of_its_code_on_the_line() {
+        for (fault, expected) in [
+            (Fault::Slack, [2, 0]),
+            (Fault::OverTension, [4, 0]),
+            (Fault::CellSaturated, [0x80, 1]),
+        ] {
+            let mut bytes = [0; 2];
+            assert!(postcard::to_slice(&FaultSet::single(fault), &mut bytes).is_ok());
+            assert_eq!(bytes, expected, "{fault:?}");
+        }
+    }
+
     #[test]
     fn the_most_severe_reaction_wins() {
         let mut set = FaultSet::single(Fault::Unreachable);

@@ -11,7 +11,7 @@ const WATCHED_S: f64 = 1.0;
 pub(super) const MORE: f64 = 0.1;
 pub(super) const MORE_MM: f64 = 0.5;
 
-/// The most that any such leg may do, as a part beyond its maximum tension and off its way, mm: 226.4 N of 150 N (`--seed 271129`, #10795) and 7.1 mm
+/// The most that any such leg may do, as a part beyond its maximum tension and off its way, mm: 226.3 N of 150 N (`--seed 271129`, #10795) and 7.0 mm
 /// (`--seed 12001`, #3234) are known.
 pub(super) const CUT_OFF_BEYOND: f64 = 0.55;
 pub(super) const CUT_OFF_MM: f64 = 8.0;

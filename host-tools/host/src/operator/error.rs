@@ -74,7 +74,8 @@ impl OperatorError {
         match self {
             Self::ConnectionLost(name, source) => Failure::refused(
                 format!("the connection to {name} is lost: {source}"),
-                "plug the board in again; without its host an armed leg holds by itself",
+                "plug the board in again; without its host a leg that homes or follows commands is held by itself, one that jogs \
+                 is switched off; one that keeps station goes on and moves by itself",
             ),
             Self::NoAnswer(name) => Failure::refused(
                 format!("{name} does not answer"),
@@ -163,7 +164,8 @@ impl OperatorError {
             ),
             Self::NotStopped(name) => Failure::failed(
                 format!("{name} did not acknowledge the stop"),
-                "press the emergency stop; without its host an armed leg holds by itself",
+                "press the emergency stop; without its host a leg that homes or follows commands is held by itself, one that jogs \
+                 is switched off; one that keeps station goes on and moves by itself",
             ),
             Self::NothingRecorded => Failure::refused(
                 "the leg's settings have it record nothing",

@@ -5,7 +5,7 @@ use leg_base::json_object;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::Fault;
 use leg_sim::shadow::Divergence;
-use leg_sim::simulation::{ScenarioMeasurement, Summary};
+use leg_sim::simulation::{RefusedCommand, ScenarioMeasurement, Summary};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -49,6 +49,7 @@ impl RunReport<'_> {
             tension_range_n: summary.tension_range_n,
             findings: &summary.measurements,
             faults: summary.faults.iter().map(fault).collect::<Vec<_>>(),
+            refused: &summary.refused,
             divergence: &summary.divergence,
             stopped: &summary.stopped,
             passed: summary.passes(),
@@ -65,11 +66,12 @@ impl RunReport<'_> {
         let plots: String = self.plots.iter().map(|svg| chart_line(svg)).collect();
         format!(
             "{}\nFirmware {}, {:.1} s of the leg's time\n\n{HEADING}{rows}\n\
-             Tensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}Speed: {:.0} ticks a second\n{}{plots}",
+             Tensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}{}Speed: {:.0} ticks a second\n{}{plots}",
             self.title,
             self.firmware,
             summary.ticks as f64 * tick_s(),
             faults_text(summary),
+            refused_text(&summary.refused),
             divergence_text(&summary.divergence),
             self.ticks_per_s,
             self.resources_text(),
@@ -98,6 +100,17 @@ fn faults_text(summary: &Summary) -> String {
         [] => "none".into(),
         faults => faults.iter().map(text).collect::<Vec<_>>().join(", "),
     }
+}
+
+/// A line for each command that the leg refused; nothing without one.
+fn refused_text(refused: &[RefusedCommand]) -> String {
+    let line = |refused: &RefusedCommand| {
+        format!(
+            "Refused: {} ({:.3} s): {}\n",
+            refused.command, refused.at_s, refused.reason
+        )
+    };
+    refused.iter().map(line).collect()
 }
 
 fn divergence_text(divergence: &Divergence) -> String {

@@ -33,7 +33,8 @@ class Leg:
     """A leg on a serial port, commanded as by `leg home`, `leg move` and so on; or the same emulated in this process.
 
     Each call returns at its end, with telemetry. After `move`, `stiffness` and `follow` the leg keeps station; after `home`,
-    `hold` and `stop`, after Ctrl-C and after an error it is in hold. A leg that hears no more of this program holds by itself.
+    `hold` and `stop`, after Ctrl-C and after an error it is in hold. One that homes or follows commands, and hears no more of
+    this program, is held by itself.
     Raises LegFault, Refused, LegTimeout, or LegError where the connection fails.
     """
 
@@ -91,16 +92,21 @@ class Leg:
         """
 
     def hold(self) -> dict[str, Any]:
-        """Holds the leg where it is."""
+        """Brings the leg to the state held, on its screws."""
 
     def stop(self) -> None:
-        """Stops the leg, which is in hold then. From another thread it ends the call that uses the leg, which raises LegError."""
+        """Stops the leg: it is in hold then. One that is disarmed or off stays so, one that ramps down goes on.
+
+        From another thread it ends the call that uses the leg, which raises LegError.
+        """
 
     def disarm(self) -> None:
         """Leads the leg straight down, pays its tendons out and switches the drivers off."""
 
     def clear(self) -> None:
-        """Clears the faults whose cause is gone; the leg is in hold then, or disarmed."""
+        """Clears the faults whose cause is gone. The leg is in hold then, keeps station as before, or is disarmed; one that was held
+        without a zero pays its tendons out first.
+        """
 
     def telemetry(self) -> dict[str, Any]:
         """What the leg reports, by the names of `SimulatedLeg.telemetry`."""
@@ -407,7 +413,9 @@ class SimulatedLeg:
         """Chooses the load that the tendons hold: `"off"`, `"estimated"` (from the tensions) or `"frozen"` (as it is now)."""
 
     def hold(self, *, wait: bool = True) -> None:
-        """Comes to rest on the way; the leg goes on following commands."""
+        """Comes to rest on the way and stays active, following commands. It does not come to the state held, as by `Leg.hold`:
+        `stop` does that.
+        """
 
     def stop(self) -> None:
         """Stays where it is, at once, until `clear`."""
@@ -437,7 +445,11 @@ class SimulatedLeg:
         """Presses or releases the emergency stop."""
 
     def silence(self, silent: bool) -> None:
-        """Lets the host send no more signs of life, or again. An armed leg comes to rest without them."""
+        """Lets the host send no more signs of life, or again.
+
+        Without them a leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps
+        station goes on and moves by itself.
+        """
 
     def truth(self) -> dict[str, Any]:
         """How the leg really is: every signal of the mechanism, by name, and `time_s`."""

@@ -121,7 +121,8 @@ impl SimulatedLeg {
         self.work(py, |session| session.command(&Command::Compensation(load)))
     }
 
-    /// Comes to rest on the way; the leg goes on following commands.
+    /// Comes to rest on the way and stays active, following commands. It does not come to the state held, as by `Leg.hold`:
+    /// `stop` does that.
     #[pyo3(signature = (*, wait = true))]
     fn hold(&self, py: Python<'_>, #[pyo3(from_py_with = named::wait)] wait: bool) -> PyResult<()> {
         self.work(py, |session| {

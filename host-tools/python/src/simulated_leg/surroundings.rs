@@ -60,7 +60,10 @@ impl SimulatedLeg {
         self.act(&Action::EmergencyStop(pressed))
     }
 
-    /// Lets the host send no more signs of life, or again. An armed leg comes to rest without them.
+    /// Lets the host send no more signs of life, or again.
+    ///
+    /// Without them a leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps
+    /// station goes on and moves by itself.
     fn silence(&self, #[pyo3(from_py_with = named::silent)] silent: bool) -> PyResult<()> {
         self.session()?.leg_mut().host_mut().silent = silent;
         Ok(())

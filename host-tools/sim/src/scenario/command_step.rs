@@ -5,10 +5,10 @@ use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::jog::{JogDemand, JogDrive};
 use serde::Deserialize;
-use strum::VariantNames;
+use strum::{IntoStaticStr, VariantNames};
 
 /// A command to the leg. What the leg itself refuses is let through, so that the refusal can be seen.
-#[derive(Clone, Debug, PartialEq, Deserialize, VariantNames)]
+#[derive(Clone, Debug, PartialEq, Deserialize, IntoStaticStr, VariantNames)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[strum(serialize_all = "snake_case")]
 pub enum CommandStep {

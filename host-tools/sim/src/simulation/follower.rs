@@ -23,7 +23,7 @@ impl Follower {
         let sender = PathSender::new(path, ends, &stand.settings);
         let sender =
             sender.map_err(|(time_s, refusal)| SimulationError::Path { time_s, refusal })?;
-        stand.send(&sender.approach())?;
+        stand.send(&sender.approach(), "move to the path")?;
         stand.follow_error = FollowError::default();
         Ok(Self { sender, ends })
     }
@@ -38,7 +38,7 @@ impl Follower {
             return Ok(false);
         };
         for command in self.sender.due(&telemetry) {
-            stand.send(&command)?;
+            stand.send(&command, "follow")?;
         }
         if let Some(at) = self.sender.motion(time_s) {
             stand.compare_with(&at);

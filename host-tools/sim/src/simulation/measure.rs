@@ -10,7 +10,9 @@ pub(super) fn measure(measurand: Measurand, stand: &TestStand<'_>) -> f64 {
         value.map_or(f64::NAN, f64::from)
     };
     match measurand {
-        Measurand::TipErrorMm => (stand.average_tip_m() - stand.leg.commanded_m()).norm() * 1000.0,
+        Measurand::TipErrorMm => stand.average_tip_m().map_or(f64::NAN, |tip_m| {
+            (tip_m - stand.leg.commanded_m()).norm() * 1000.0
+        }),
         Measurand::FollowErrorMm => stand.follow_error.largest_mm(),
         Measurand::FollowLagMs => stand.follow_error.lag_ms(),
         Measurand::TipMovedMm => stand.extremes.tip_moved_mm,

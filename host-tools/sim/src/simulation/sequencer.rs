@@ -31,8 +31,8 @@ pub(super) struct Sequencer<'a> {
     /// When the present step began, and the last one that did something, s.
     began_s: f64,
     acted_s: f64,
-    /// Tip before a push, m.
-    before_m: Option<Vector3<f64>>,
+    /// Tip before a push, m, and when that began, s.
+    before_push: Option<(Vector3<f64>, f64)>,
     /// Since when the leg has arrived, s.
     arrived_s: Option<f64>,
     /// The path that is being streamed.
@@ -53,7 +53,7 @@ impl<'a> Sequencer<'a> {
             next: 0,
             began_s: 0.0,
             acted_s: 0.0,
-            before_m: None,
+            before_push: None,
             arrived_s: None,
             follower: None,
         }
@@ -208,23 +208,29 @@ impl<'a> Sequencer<'a> {
     /// Pushes across the leg and compares the moment with the angle.
     fn push_test(&mut self, push: &PushTest, stand: &mut TestStand<'_>) -> bool {
         let across = stand.leg.leg().plant().transverse(push.azimuth_deg);
-        let Some(before_m) = self.before_m else {
-            self.before_m = Some(stand.average_tip_m());
+        let Some((before_m, began_s)) = self.before_push else {
+            let Some(tip_m) = stand.average_tip_m() else {
+                return false;
+            };
+            self.before_push = Some((tip_m, stand.leg.time_s()));
             let force_n = across * push.force_n;
             let plant = stand.leg.leg_mut().plant_mut();
             plant.push(force_n, push.settle_s, PUSH_TEST_RISE_S);
             return false;
         };
-        if stand.leg.time_s() - self.began_s < push.settle_s {
+        let Some(after_m) = stand
+            .average_tip_m()
+            .filter(|_| stand.leg.time_s() - began_s >= push.settle_s)
+        else {
             return false;
-        }
+        };
         let length_m = before_m.norm();
-        let moved_m = (stand.average_tip_m() - before_m).dot(&across);
+        let moved_m = (after_m - before_m).dot(&across);
         let stiffness = push.force_n * length_m / (moved_m / length_m);
         let off = push.nm_per_rad * push.within_percent / 100.0;
         let between = [push.nm_per_rad - off, push.nm_per_rad + off];
         stand.record(&push.name, (stiffness, "N·m/rad"), between, None);
-        self.before_m = None;
+        self.before_push = None;
         stand
             .leg
             .leg_mut()

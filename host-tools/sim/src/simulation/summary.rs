@@ -29,6 +29,9 @@ pub enum SimulationError {
     /// It takes too long.
     #[error("step {0} is not over after ten minutes of the leg's time; make the scenario shorter")]
     Endless(usize),
+    /// It takes no time.
+    #[error("no step takes time; let the last one wait, as `{{ wait_s = 1 }}` does")]
+    Timeless,
     /// A command has no form.
     #[error("a command cannot be sent: {0}")]
     Command(leg_firmware::frame::FrameError),
@@ -69,6 +72,17 @@ impl ScenarioMeasurement {
     }
 }
 
+/// A command that the leg refused.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RefusedCommand {
+    /// What it was.
+    pub command: &'static str,
+    /// When it was sent, s.
+    pub at_s: f64,
+    /// Why it was refused.
+    pub reason: String,
+}
+
 /// The leg at a time, for plots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -98,6 +112,8 @@ pub struct Summary {
     pub divergence: Divergence,
     /// Every fault in the order in which it was first seen, with the time, s.
     pub faults: Vec<(Fault, f64)>,
+    /// Commands that the leg refused, as they came.
+    pub refused: Vec<RefusedCommand>,
     /// Faults that the scenario does not expect.
     pub unexpected: Vec<Fault>,
     /// The leg at 500 Hz.

@@ -2,12 +2,13 @@
 
 use super::extremes::{Extremes, NO_RANGE, range_with_tensions};
 use super::follow_error::FollowError;
-use super::{Comparison, Sample, ScenarioMeasurement, SimulationError, Summary};
+use super::{Comparison, RefusedCommand, Sample, ScenarioMeasurement, SimulationError, Summary};
 use crate::emulated_leg::EmulatedLeg;
 use crate::hosted_leg::HostedLeg;
 use crate::link::Link;
 use crate::plant::Truth;
 use crate::scenario::{CommandStep, Measurand, Scenario};
+use leg_base::refusal;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::control::MotionState;
 use leg_firmware::sensors::Sensors;
@@ -35,6 +36,8 @@ pub(super) struct TestStand<'a> {
     pub summary: Summary,
     /// Those that the firmware started with.
     pub settings: Settings,
+    /// Commands that the leg has not answered: the number of each, what it is, and when it was sent, s.
+    unanswered: Vec<(u16, &'static str, f64)>,
     /// Whether the leg compensates its load.
     compensated: bool,
     bounds_n: [f64; 2],
@@ -60,6 +63,7 @@ impl<'a> TestStand<'a> {
                 tension_range_n: NO_RANGE,
                 ..Summary::default()
             },
+            unanswered: Vec::new(),
             compensated: true,
             path_error_m: None,
             bounds_n: [rig.f_min_n, rig.f_max_n],
@@ -69,11 +73,11 @@ impl<'a> TestStand<'a> {
 
     /// Sends the command of a step.
     pub fn command(&mut self, step: &CommandStep) -> Result<(), SimulationError> {
-        self.send(&step.command())
+        self.send(&step.command(), step.into())
     }
 
-    /// Sends a command.
-    pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
+    /// Sends a command; `what` it is, for people.
+    pub fn send(&mut self, command: &Command, what: &'static str) -> Result<(), SimulationError> {
         match *command {
             Command::Compensation(compensation) => {
                 self.compensated = compensation != Compensation::Off;
@@ -82,8 +86,24 @@ impl<'a> TestStand<'a> {
             Command::Home => self.compensated = true,
             _ => {}
         }
-        let sent = self.leg.send(command).map(|_| ());
-        sent.map_err(SimulationError::Command)
+        let number = self.leg.send(command).map_err(SimulationError::Command)?;
+        self.unanswered.push((number, what, self.leg.time_s()));
+        Ok(())
+    }
+
+    /// Notes which commands the leg has refused in the last tick.
+    fn note_refusals(&mut self) {
+        for answer in self.leg.answers() {
+            let sent = |(number, ..): &mut (u16, _, _)| *number == answer.number;
+            let answered = self.unanswered.extract_if(.., sent).next();
+            if let (Some((_, command, at_s)), Err(refusal)) = (answered, answer.result) {
+                self.summary.refused.push(RefusedCommand {
+                    command,
+                    at_s,
+                    reason: refusal::description(&refusal)[0].clone(),
+                });
+            }
+        }
     }
 
     /// Nothing is commanded beside what the leg itself takes for its target.
@@ -139,6 +159,7 @@ impl<'a> TestStand<'a> {
         let (taken, reply) = self.leg.tick()?;
         watch(&taken.sensors, &taken.link, &reply);
         self.sample(time_s, comparison, &reply.telemetry);
+        self.note_refusals();
         let truth = *self.leg.truth();
         self.take(time_s, &truth, &reply);
         Ok(())
@@ -184,9 +205,9 @@ impl<'a> TestStand<'a> {
         }
     }
 
-    /// Where the tip was on average, m.
-    pub fn average_tip_m(&self) -> Vector3<f64> {
+    /// Where the tip was on average, m; none before the first tick.
+    pub fn average_tip_m(&self) -> Option<Vector3<f64>> {
         let sum: Vector3<f64> = self.tips_m.iter().sum();
-        sum / (self.tips_m.len().max(1) as f64)
+        (!self.tips_m.is_empty()).then(|| sum / (self.tips_m.len() as f64))
     }
 }

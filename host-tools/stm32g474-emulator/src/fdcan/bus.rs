@@ -1,12 +1,14 @@
 //! What a node and its bus say to each other.
 
-/// The rates of the bus, bit/s.
+/// The rates of the bus, bit/s, and where its other nodes sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CanBus {
     /// Of arbitration.
     pub nominal_hz: u32,
     /// Of the data of frames that switch their rate.
     pub data_hz: u32,
+    /// Where in a bit, of either rate, thousandths of it.
+    pub sample_permille: u32,
 }
 
 /// How a transmission ends.

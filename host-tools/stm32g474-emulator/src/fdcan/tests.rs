@@ -11,6 +11,7 @@ use crate::device::Device;
 const BUS: CanBus = CanBus {
     nominal_hz: 1_000_000,
     data_hz: 5_000_000,
+    sample_permille: 750,
 };
 /// Nanoseconds are not cycles; a bit at 1 Mbit/s is 170 of these.
 const BIT: u64 = 170;
@@ -22,7 +23,7 @@ fn open() -> DeviceBench<Fdcan> {
     bench.cycle = 0;
     bench.put("CCCR", &[("INIT", 1)]);
     bench.put("CCCR", &[("INIT", 1), ("CCE", 1)]);
-    bench.put("NBTP", &[("NTSEG1", 134), ("NTSEG2", 33), ("NSJW", 33)]);
+    bench.put("NBTP", &[("NTSEG1", 126), ("NTSEG2", 41), ("NSJW", 41)]);
     bench.put(
         "DBTP",
         &[("DTSEG1", 24), ("DTSEG2", 7), ("DSJW", 7), ("TDC", 1)],

@@ -13,6 +13,9 @@ const TOLERANCE_PPM: u64 = 5_000;
 /// The delay of a transceiver and back, ns: at most that by ISO 11898-2.
 const TRANSCEIVER_NS: u64 = 255;
 
+/// How long before the end of the bit in which the rate changes a receiver has to read it, ns: a period of an adapter's clock of 40 MHz.
+const SWITCH_MARGIN_NS: u32 = 25;
+
 /// The bits of a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitTiming {
@@ -22,6 +25,22 @@ pub struct BitTiming {
     pub sample_permille: u32,
     /// Periods of the block's clock in a bit.
     pub periods: u32,
+}
+
+impl BitTiming {
+    /// From the begin of a bit to its sample point, ns.
+    fn sample_ns(self) -> u32 {
+        let sample = u64::from(self.sample_permille) * 1_000_000;
+        sample.checked_div(self.hz.into()).unwrap_or_default() as u32
+    }
+
+    /// From there to its end, ns.
+    fn after_sample_ns(self) -> u32 {
+        1_000_000_000_u32
+            .checked_div(self.hz)
+            .unwrap_or_default()
+            .saturating_sub(self.sample_ns())
+    }
 }
 
 /// Whether two rates count as the same.
@@ -92,7 +111,36 @@ impl Fdcan {
             .filter(|_| frame.bit_rate_switch)
         {
             self.check_compensation(data, context);
+            self.check_switch(data, context);
         }
+    }
+
+    /// A sender changes the rate at its sample point of a nominal bit, and ends that bit as one of data: ISO 11898-1. A receiver that samples nominal bits later
+    /// may find the next bit there.
+    fn check_switch(&self, data: BitTiming, context: &mut Context<'_>) {
+        let Some(nominal) = self.nominal_timing(context.clocks) else {
+            return;
+        };
+        let sample_permille = self.bus.sample_permille;
+        let others = |own: BitTiming| BitTiming {
+            sample_permille,
+            ..own
+        };
+        let mut check = |reads: &str, changes: &str, sample_ns: u32, end_ns: u32| {
+            if sample_ns + SWITCH_MARGIN_NS > end_ns {
+                context.findings.add(format!(
+                    "FDCAN2_NBTP: {reads} at {sample_ns} ns the bit in which {changes} the rate, and which ends at {end_ns} ns"
+                ));
+            }
+        };
+        let (others_nominal, others_data) = (others(nominal), others(data));
+        let (own_end_ns, others_end_ns) = (
+            nominal.sample_ns() + data.after_sample_ns(),
+            others_nominal.sample_ns() + others_data.after_sample_ns(),
+        );
+        let [own_ns, others_ns] = [nominal, others_nominal].map(BitTiming::sample_ns);
+        check("it samples", "others change", own_ns, others_end_ns);
+        check("others sample", "it changes", others_ns, own_end_ns);
     }
 
     pub(super) fn report_rates(&self, [nominal, data]: [u32; 2], context: &mut Context<'_>) {
@@ -107,8 +155,7 @@ impl Fdcan {
     /// compensated: RM0440, FDCAN transceiver delay compensation.
     fn check_compensation(&self, data: BitTiming, context: &mut Context<'_>) {
         let s = &self.settings;
-        let permille = u64::from(data.sample_permille) * 1_000_000;
-        let sample_ns = permille.checked_div(data.hz.into()).unwrap_or_default();
+        let sample_ns = u64::from(data.sample_ns());
         if self.registers.is_set(s.delay_compensation) {
             let offset = self.registers.value(s.delay_offset);
             if offset == 0 || offset >= data.periods {

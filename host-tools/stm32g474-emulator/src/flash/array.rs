@@ -22,6 +22,8 @@ pub struct Array {
     bytes: Vec<u8>,
     /// The double words with more than one wrong bit, by the offset of their first byte.
     damaged: BTreeSet<u32>,
+    /// Those with one wrong bit, which the chip corrects as it reads them.
+    weak: BTreeSet<u32>,
 }
 
 impl Default for Array {
@@ -29,6 +31,7 @@ impl Default for Array {
         Self {
             bytes: vec![ERASED; SIZE as usize],
             damaged: BTreeSet::new(),
+            weak: BTreeSet::new(),
         }
     }
 }
@@ -74,6 +77,19 @@ impl Array {
         !self.damaged.is_empty() && self.damaged.contains(&double_word_of(offset))
     }
 
+    /// Whether a double word has one wrong bit.
+    #[must_use]
+    pub fn is_weak(&self, offset: u32) -> bool {
+        !self.weak.is_empty() && self.weak.contains(&double_word_of(offset))
+    }
+
+    /// Lets a bit of a double word be wrong: it is read as it was.
+    pub fn weaken(&mut self, offset: u32) {
+        if offset < SIZE {
+            self.weak.insert(double_word_of(offset));
+        }
+    }
+
     /// Lets a double word disagree with its ECC.
     pub fn damage(&mut self, offset: u32) {
         if offset < SIZE {
@@ -93,8 +109,9 @@ impl Array {
             return false;
         };
         place.copy_from_slice(bytes);
-        self.damaged
-            .retain(|word| *word + DOUBLE_WORD <= offset || *word >= end);
+        for words in [&mut self.damaged, &mut self.weak] {
+            words.retain(|word| *word + DOUBLE_WORD <= offset || *word >= end);
+        }
         true
     }
 
@@ -111,6 +128,7 @@ impl Array {
         self.set(offset, stored);
         if value == 0 {
             self.damaged.remove(&offset);
+            self.weak.remove(&offset);
         }
     }
 
@@ -123,7 +141,9 @@ impl Array {
 
     /// Erases a range of whole double words.
     pub fn erase(&mut self, range: Range<u32>) {
-        self.damaged.retain(|word| !range.contains(word));
+        for words in [&mut self.damaged, &mut self.weak] {
+            words.retain(|word| !range.contains(word));
+        }
         if let Some(place) = self.bytes_mut(range) {
             place.fill(ERASED);
         }

@@ -62,6 +62,7 @@ places! {
         ecc_system: ECCR.SYSF_ECC,
         ecc_interrupt: ECCR.ECCIE,
         ecc_corrected: ECCR.ECCC,
+        ecc_corrected_above: ECCR.ECCC2,
         ecc_detected: ECCR.ECCD,
         /// The same for the upper double word of four words, which one bank reads at once.
         ecc_detected_above: ECCR.ECCD2,

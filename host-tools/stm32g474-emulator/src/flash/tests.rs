@@ -337,6 +337,27 @@ fn a_damaged_double_word_asks_for_an_nmi_and_names_its_bank() {
     assert!(bench.device.nmi());
 }
 
+/// Until the flags are cleared the place stays that of the first error, which may be a corrected one.
+#[test]
+fn the_place_of_an_error_is_that_of_the_first_one() {
+    let mut bench = bench(true, 1);
+    bench.device.weaken(START);
+    bench.device.damage(PAGE);
+    let mut bank_after = |address: u32| {
+        bench.word_at(address);
+        let eccr = bench.read("ECCR");
+        bench.device.registers.field("ECCR", "BK_ECC").extract(eccr)
+    };
+    assert_eq!([START, PAGE].map(&mut bank_after), [0, 0]);
+    assert!(bench.device.nmi());
+    let eccr = bench.read("ECCR");
+    bench.write("ECCR", eccr);
+    bench.word_at(PAGE);
+    let eccr = bench.read("ECCR");
+    let bank = bench.device.registers.field("ECCR", "BK_ECC").extract(eccr);
+    assert_eq!(bank, 1);
+}
+
 #[test]
 fn a_cut_leaves_a_double_word_erased_complete_or_damaged() {
     let mut seen = [0; 3];

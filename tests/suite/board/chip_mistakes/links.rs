@@ -22,14 +22,19 @@ mistakes! {
         report: "LPUART1_BRR: it sends and receives at",
     };
     can_bits_of_another_length: can(
-        "NOMINAL: [u8; 3] = [135, 34, 34];",
-        "NOMINAL: [u8; 3] = [67, 17, 17];",
+        "NOMINAL: [u8; 3] = [127, 42, 42];",
+        "NOMINAL: [u8; 3] = [63, 21, 21];",
         "FDCAN2_NBTP and FDCAN2_DBTP give 2000000 and 5000000 bit/s, the bus has 1000000 and 5000000 bit/s",
     );
     can_data_bits_of_another_length: can(
         "DATA: [u8; 3] = [25, 8, 8];",
         "DATA: [u8; 3] = [27, 8, 8];",
         "FDCAN2_NBTP and FDCAN2_DBTP give 1000000 and 4722222 bit/s, the bus has 1000000 and 5000000 bit/s",
+    );
+    can_bits_sampled_late: can(
+        "NOMINAL: [u8; 3] = [127, 42, 42];",
+        "NOMINAL: [u8; 3] = [135, 34, 34];",
+        "FDCAN2_NBTP: it samples at 800 ns the bit in which others change the rate, and which ends at 800 ns",
     );
     can_delay_not_compensated: can(
         "    registers.dbtp().modify(|w| w.set_tdc(true));\n",

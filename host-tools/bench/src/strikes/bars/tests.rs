@@ -13,8 +13,9 @@ fn the_page_says_the_bars() {
         format!("{:.0} % where two load cells", 100.0 * SWAPPED_BEYOND),
         format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
         format!(
-            "{:.0} % where the play of a gear grows on the way, or a motor obeys or is counted in parts there",
-            100.0 * PLAY_BEYOND.max(IN_PARTS_BEYOND)
+            "{:.0} % where the play of a gear grows on the way; {:.0} % where a motor obeys or is counted in parts there",
+            100.0 * PLAY_BEYOND,
+            100.0 * IN_PARTS_BEYOND
         ),
         format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
@@ -64,7 +65,7 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part);
     for words in [
         format!(
-            "no more than {} above what its speed, its payload and the stretch of its tendons give one whose motors stop at once, or when the fault is named where the motors go on until then, and never more than {} above the maximum",
+            "the tension is at most {} above that leg's, and at most {} above the maximum tension",
             percent(MORE),
             percent(CUT_OFF_BEYOND)
         ),
@@ -86,8 +87,9 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             percent(SLIP_BEYOND)
         ),
         format!(
-            "obeys or is counted in parts there: up to {} more",
-            percent(PLAY_BEYOND.max(IN_PARTS_BEYOND))
+            "the play of a gear grows at once on the way: up to {} more; a motor obeys or is counted in parts there: up to {} more",
+            percent(PLAY_BEYOND),
+            percent(IN_PARTS_BEYOND)
         ),
         format!(
             "up to {} and {} more",
@@ -106,6 +108,10 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             "leaves its load out: up to {} more",
             percent(LEFT_OUT_BEYOND)
         ),
+        format!(
+            "At other poses it is up to {} mm, and {GAIN_AT_MAX_MM} mm where the cell comes to show the maximum tension",
+            GAIN_MM.max(GAIN_DOWN_MM)
+        ),
     ] {
         assert!(page.contains(&words), "{words}");
     }
@@ -116,7 +122,7 @@ fn the_readme_says_how_far_a_load_cell_moves_a_leg_at_rest() {
     let page = include_str!("../../../../../README.md");
     let page: Vec<_> = page.split_whitespace().collect();
     let words = format!(
-        "up to {REST_MM} mm, {} mm where its gain is off or it drifts, {GAIN_AT_MAX_MM} mm where it drifts to the maximum",
+        "up to {REST_MM} mm, {} mm where its gain is off or it drifts, {GAIN_AT_MAX_MM} mm where it drifts, steps or wanders to the maximum tension, {SWAPPED_MM} mm where two cells change their places",
         GAIN_MM.max(GAIN_DOWN_MM)
     );
     assert!(page.join(" ").contains(&words), "{words}");

@@ -2,7 +2,7 @@
 //!
 //! It is read from `/sys`: `socketcan` would ask by netlink, with a crate more and nothing that a test can stand in for.
 
-use leg_firmware::can::{DATA_BIT_RATE, NOMINAL_BIT_RATE};
+use leg_firmware::can::{DATA_BIT_RATE, NOMINAL_BIT_RATE, SAMPLE_POINT_PERMILLE};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -126,8 +126,10 @@ fn bit_rates() -> String {
 }
 
 fn bring_up(name: &str) -> String {
+    let sample_point = f64::from(SAMPLE_POINT_PERMILLE) / 1000.0;
     format!(
-        "`ip link set {name} up type can bitrate {NOMINAL_BIT_RATE} dbitrate {DATA_BIT_RATE} fd on`"
+        "`ip link set {name} up type can bitrate {NOMINAL_BIT_RATE} sample-point {sample_point} dbitrate {DATA_BIT_RATE} \
+         dsample-point {sample_point} fd on`"
     )
 }
 
@@ -159,7 +161,7 @@ mod tests {
     #[test]
     fn what_is_missing_is_named_with_its_remedy() -> io::Result<()> {
         assert_eq!(checked("can0")?, Ok(()));
-        let settings = "up type can bitrate 1000000 dbitrate 5000000 fd on`";
+        let settings = "up type can bitrate 1000000 sample-point 0.75 dbitrate 5000000 dsample-point 0.75 fd on`";
         for (name, expected) in [
             (
                 "can1",

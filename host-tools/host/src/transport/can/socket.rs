@@ -213,7 +213,7 @@ mod tests {
             error.to_string(),
             "the controller of `can0` is off the bus after too many errors; check cable, terminators and that all \
              nodes have 1000 and 5000 kbit/s, then `ip link set can0 down` and \
-             `ip link set can0 up type can bitrate 1000000 dbitrate 5000000 fd on`"
+             `ip link set can0 up type can bitrate 1000000 sample-point 0.75 dbitrate 5000000 dsample-point 0.75 fd on`"
         );
     }
 

@@ -46,6 +46,20 @@ fn mistakes_are_found() {
             },
         ),
         (
+            "FDCAN2_NBTP: it samples at 800 ns the bit in which others change the rate, and which ends at 800 ns",
+            |b| {
+                sampling(b, 134, 33);
+                b.send(OWN, &[0; 12]);
+            },
+        ),
+        (
+            "FDCAN2_NBTP: others sample at 750 ns the bit in which it changes the rate, and which ends at 748 ns",
+            |b| {
+                sampling(b, 117, 50);
+                b.send(OWN, &[0; 12]);
+            },
+        ),
+        (
             "FDCAN2_DBTP: TDC is off, and data are sampled after 152 ns: a transceiver may take 255 ns",
             |b| {
                 reopen(b, "DBTP", "TDC", 0);
@@ -153,6 +167,12 @@ fn mistakes_are_found() {
 
 fn slower(bench: &mut DeviceBench<Fdcan>, register: &str, field: &str) {
     reopen(bench, register, field, 1);
+}
+
+/// Other lengths of a nominal bit before and after its sample point.
+fn sampling(bench: &mut DeviceBench<Fdcan>, before: u32, after: u32) {
+    reopen(bench, "NBTP", "NTSEG1", before);
+    reopen(bench, "NBTP", "NTSEG2", after);
 }
 
 /// Changes a setting as it has to be done.

@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut Sh
     sentence(
         ui,
         1,
-        "Take the payload off: with one the zero is wrong, and nothing reports it. Let the leg hang free.",
+        "Take the payload off: with one the zero is wrong, and the tendons are taken for softer ones. Let the leg hang free.",
     );
     let words = format!(
         "This will happen: every tendon is paid out by {} mm at a time, until all are slack, and then one after the other is reeled in at {} mm/s, up to {} N. A motor that goes farther than {} mm ends it.",
