@@ -14,7 +14,9 @@ pub use field::Field;
 pub use gains::{Gains, SECTIONS, SERVO};
 pub use out_of_range::OutOfRange;
 pub use recorded::{RECORDED_SIGNALS, RecordedSignal, SignalSet};
-pub use sections::{AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, Servo};
+pub use sections::{
+    AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, SPEED_BY_POSITION, Servo,
+};
 pub use tendon::TendonParameters;
 
 use leg_model::{Error, JointStiffness, Quantity, Reason, RigParameters, SupportKind};

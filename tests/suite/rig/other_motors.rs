@@ -29,7 +29,7 @@ const WORK: &str = "title = \"other motors\"\nseed = 6\nsteps = [ { await = { st
                     [start.slack]\nslack_mm = 1\n";
 
 /// Data sheets of motors between 10 and 150 W, and of poor ones.
-const MOTORS: [(&str, &str); 10] = [
+const MOTORS: [(&str, &str); 11] = [
     ("no gear", "gear_ratio = 1\n"),
     ("a slow gear", "gear_ratio = 14\n"),
     ("a slower gear", "gear_ratio = 30\n"),
@@ -45,6 +45,7 @@ const MOTORS: [(&str, &str); 10] = [
          friction_nm = 6e-4\ngear_ratio = 8\ncounts_per_turn = 1024\nsupply_v = 12\nsupply_range_v = 20\n\
          continuous_a = 1.5\nthermal_time_s = 10\n",
     ),
+    ("a coarse screw", "lead_m = 5e-3\n"),
     ("a heavy rotor", "inertia_kg_m2 = 6e-6\n"),
     (
         "a stiff gear",
@@ -265,7 +266,18 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
             "[control.servo]\ndead_band_m = 1e-7\n",
             "narrower than a count",
         ),
-        ("counts_per_turn = 16\n", "at the tip"),
+        (
+            "counts_per_turn = 16\n",
+            "at the tip: `counts_per_turn` of ",
+        ),
+        (
+            "[control.servo]\ndead_band_m = 1e-4\n",
+            "at the tip: a band of 5.4e-6 would do",
+        ),
+        (
+            "[control.homing]\nspeed_m_per_s = 0.02\n",
+            "homing may fail as tendons are pulled too hard before their motors stop: give at most 0.015",
+        ),
         (
             "current_output = \"magnitude_when_driven\"\n[control.homing]\nspeed_m_per_s = 0.002\n",
             "too short for its current output",

@@ -63,6 +63,19 @@ fields! {
     }
 }
 
+/// How many times faster than the position loop a servo's speed loop is, where the settings follow from a motor's data.
+pub const SPEED_BY_POSITION: f32 = 4.5;
+
+impl Servo {
+    /// What the highest current accelerates the tendon by at most, m/s²: by the gains, which follow from the rotor's inertia. Gains that are lower than
+    /// these make it more.
+    #[must_use]
+    pub fn acceleration_m_per_s2(&self) -> f32 {
+        let v_s2_per_m = self.speed_gain_v_s_per_m / (SPEED_BY_POSITION * self.position_gain_per_s);
+        self.current_a * self.resistance_ohm / v_s2_per_m
+    }
+}
+
 fields! {
     /// How pose and load are estimated.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]

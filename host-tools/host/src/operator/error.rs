@@ -248,7 +248,11 @@ fn angle_deg(a: [f32; 2], b: [f32; 2]) -> f64 {
 }
 
 fn remedies_and_clear(present: FaultSet) -> String {
-    format!("{}; then `leg clear`", remedies(present))
+    let remedies = remedies(present);
+    if remedies.contains("clear the fault") {
+        return remedies;
+    }
+    format!("{remedies}; then `leg clear`")
 }
 
 impl From<OperatorError> for Failure {

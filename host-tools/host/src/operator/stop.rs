@@ -1,5 +1,6 @@
 //! Stopping, disarming and clearing a leg.
 
+use super::motion::not_following;
 use super::{Operator, OperatorError};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRefusal, HostReply, HostRequest};
@@ -112,14 +113,23 @@ impl Operator {
     /// Ramps the tendons down and waits until the drivers are off, as long as motors move.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::TimedOut`] where the leg stands still for five seconds.
+    /// As [`Self::command`]; [`OperatorError::Failed`] and [`OperatorError::StoppedByOtherHost`] where a fault or a stop ends it on the way;
+    /// [`OperatorError::TimedOut`] where the leg stands still for five seconds.
     pub fn disarm(&mut self) -> Result<(), OperatorError> {
+        let asked = "disarm";
+        let before = self.telemetry()?.telemetry.faults;
         self.command(Command::Disarm)?;
         self.drives = false;
-        self.wait_while_moving("relax", STILL_TIME, |telemetry| {
-            matches!(telemetry.state, State::Disarmed | State::Off)
+        let ended = self.wait_while_moving(asked, STILL_TIME, |telemetry| {
+            matches!(telemetry.state, State::Disarmed | State::Off | State::Held)
         })?;
-        Ok(())
+        let new_faults = ended.faults.stopping().difference(before);
+        match ended.state {
+            State::Held => Err(not_following(asked, &ended)),
+            // With its tendons taut, perhaps.
+            State::Off if new_faults.any() => Err(not_following(asked, &ended)),
+            _ => Ok(()),
+        }
     }
 
     /// Waits until `done` says so, as long as motors move, and `still` longer.

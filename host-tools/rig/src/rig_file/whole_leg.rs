@@ -91,6 +91,20 @@ fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
                 "give a smaller band, or a higher `f_max_n`",
             ));
         }
+        if file.pretension_n as f32 > f_max_n - servo.f_max_band_n {
+            let highest_n = file.f_max_n - decimal(servo.f_max_band_n);
+            return Err(TomlError::new(
+                root.place(&["tendon", "pretension_n"]).unwrap_or(0..0),
+                format!(
+                    "no target comes nearer to `tendon.f_max_n` ({}) than `control.servo.f_max_band_n` ({}), so `pretension_n` ({}) is not \
+                     reached",
+                    plain(file.f_max_n),
+                    plain(decimal(servo.f_max_band_n)),
+                    plain(file.pretension_n)
+                ),
+                format!("give at most {}", plain(highest_n)),
+            ));
+        }
     }
     Ok(())
 }
@@ -185,6 +199,22 @@ mod tests {
     }
 
     #[test]
+    fn a_pretension_within_the_band_is_refused() {
+        let text = |pretension_n| {
+            let line = format!("pretension_n = {pretension_n}");
+            changed(&[("pretension_n = 70", &line)], LEG)
+        };
+        let sentence = "so `pretension_n` (147) is not reached";
+        assert_refused(
+            &text(147),
+            "pretension_n = 147",
+            sentence,
+            "give at most 146",
+        );
+        RigFile::parse("a.toml", &text(146)).unwrap();
+    }
+
+    #[test]
     fn a_band_that_leaves_no_tension_is_refused() {
         let sentence = "`f_max_band_n` (143) leaves no tension";
         let help = "give a smaller band, or a higher `f_max_n`";
@@ -192,7 +222,8 @@ mod tests {
             let more = |band_n| format!("\n[{section}]\nf_max_band_n = {band_n}\n");
             let text = changed(&[], &more(143));
             assert_refused(&text, "f_max_band_n = 143", sentence, help);
-            RigFile::parse("a.toml", &changed(&[], &more(142))).unwrap();
+            let low = [("pretension_n = 70", "pretension_n = 8")];
+            RigFile::parse("a.toml", &changed(&low, &more(142))).unwrap();
         }
         // By its default, too.
         let narrow = changed(

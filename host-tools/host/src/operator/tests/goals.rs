@@ -134,6 +134,45 @@ fn what_the_leg_cannot_do_is_named_and_leaves_it_in_hold() {
     assert_eq!(state(&mut operator), State::Held);
 }
 
+/// What ends a disarm on its way is told at once, as of every other command: the tendons may be taut yet.
+#[test]
+fn a_disarm_that_is_ended_on_its_way_says_by_what() {
+    for stops in [true, false] {
+        let leg = hanging_leg();
+        let mut operator = host(&leg, 1);
+        operator.reach(&lean(20.0)).unwrap();
+        let (line, mut other) = (leg.clone(), host(&leg, 2));
+        let mut polls = 0;
+        operator.set_watcher(move |_| {
+            polls += 1;
+            match polls {
+                10 if stops => drop(other.stop().unwrap()),
+                10 => line.with_plant(|plant| plant.press_emergency_stop(true)),
+                _ => {}
+            }
+        });
+        let begun = operator.now();
+        let disarmed = operator.disarm();
+        if stops {
+            error_of!(
+                disarmed,
+                OperatorError::StoppedByOtherHost("disarm", State::Held)
+            );
+        } else {
+            error_of!(
+                disarmed,
+                OperatorError::Failed("disarm", now) if now.faults.has(Fault::EmergencyStop)
+            );
+        }
+        assert!(operator.now() - begun < Duration::from_secs(2));
+        let highest_n = telemetry(&mut operator)
+            .tensions_n
+            .into_iter()
+            .fold(0.0, f32::max);
+        assert!(highest_n > 20.0, "{highest_n} N");
+    }
+}
+
 #[test]
 fn a_stop_does_nothing_to_a_leg_at_rest() {
     let leg = hanging_leg();

@@ -1,5 +1,7 @@
 //! Whether the motors can do what the settings ask of them.
 
+mod homing;
+
 use super::{RigFile, Warning, place_of};
 use crate::actuator::ACTUATOR;
 use crate::number::{decimal, plain};
@@ -9,8 +11,7 @@ use crate::rig_file::derived::{
 };
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_firmware::control::SHOWN_PART;
-use leg_firmware::settings::{CurrentOutput, Motion, SERVO};
+use leg_firmware::settings::{Motion, SERVO};
 use std::ops::Range;
 
 /// Phase margin below which a servo rings whatever the motor, degrees.
@@ -72,6 +73,7 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
         checked.check_current()?;
         checked.check_heat()?;
         checked.check_speed()?;
+        checked.check_homing_speed();
         checked.check_shown();
         checked.check_counts()?;
         checked.check_bandwidth()?;
@@ -272,27 +274,6 @@ impl Motor<'_> {
         }
     }
 
-    /// An output that is silent in short pulses shows a motor that homes.
-    fn check_shown(&mut self) {
-        let actuator = &self.basis.actuator;
-        if actuator.current_output != CurrentOutput::MagnitudeWhenDriven {
-            return;
-        }
-        let shown_v = f64::from(SHOWN_PART) * actuator.supply_v;
-        let back_emf_v_s_per_m = decimal(self.gains.servo.back_emf_v_s_per_m);
-        let speed = decimal(self.gains.homing.speed_m_per_s);
-        if speed * back_emf_v_s_per_m < shown_v {
-            let text = format!(
-                "`control.homing.speed_m_per_s` ({}) turns a motor without a load by pulses that are too short for its current \
-                 output, and its ceiling is kept by counts and `resistance_ohm` alone: {} would do",
-                plain(speed),
-                plain(two_digits_above(shown_v / back_emf_v_s_per_m.max(1e-9)))
-            );
-            let keys = ["control.homing.speed_m_per_s", "actuator.current_output"];
-            self.warn(&keys, text);
-        }
-    }
-
     /// A motor comes to rest within the dead band only if its counts are fine enough.
     fn check_counts(&mut self) -> Result<(), TomlError> {
         let (count_m, band_m) = (
@@ -328,13 +309,21 @@ impl Motor<'_> {
         let tip_m = parameters.joint_length_m + parameters.leg_length_m;
         let off_m = band_m * tip_m / self.basis.lever_m.max(1e-9);
         if off_m > TIP_M {
-            let counts = self.basis.actuator.counts_per_turn * off_m / TIP_M;
+            let given = self.file.given_gains.has(SERVO, self.motor, "dead_band_m");
+            let remedy = if given {
+                let band_m = two_digits_below(band_m * TIP_M / off_m);
+                format!("a band of {} would do", plain(band_m))
+            } else {
+                let counts = self.basis.actuator.counts_per_turn * off_m / TIP_M;
+                format!(
+                    "`counts_per_turn` of {} would do",
+                    plain(two_digits_above(counts))
+                )
+            };
             let text = format!(
-                "a motor rests anywhere within `control.servo.dead_band_m` ({}), which is {} mm at the tip: `counts_per_turn` of \
-                 {} would do",
+                "a motor rests anywhere within `control.servo.dead_band_m` ({}), which is {} mm at the tip: {remedy}",
                 plain(band_m),
                 plain(two_digits(off_m * 1000.0)),
-                plain(two_digits_above(counts))
             );
             self.warn(&keys, text);
         }

@@ -2,7 +2,7 @@
 
 use crate::actuator::Actuator;
 use leg_firmware::sensors::TICK_HZ;
-use leg_firmware::settings::Servo;
+use leg_firmware::settings::{SPEED_BY_POSITION, Servo};
 use nalgebra::ComplexField;
 
 type Complex = nalgebra::Complex<f64>;
@@ -13,9 +13,6 @@ const DELAY_TICKS: f64 = 1.5;
 /// The same without the time to compute it, as in the simulation: a voltage is held for a tick. The gains that are derived have the rest as a
 /// reserve.
 const HOLD_TICKS: f64 = 0.5;
-
-/// The speed loop by the position loop: so much faster is its crossover.
-const SPEED_BY_POSITION: f64 = 4.5;
 
 /// The time of the integral by that of the position loop.
 const INTEGRAL_BY_POSITION: f64 = 2.4;
@@ -53,7 +50,7 @@ impl ServoLoop {
     /// The gain that makes the speed loop as much faster than the position loop as it has to be, V·s/m.
     pub fn speed_gain_v_s_per_m(actuator: &Actuator, position_gain_per_s: f64) -> f64 {
         let volts = actuator.back_emf_v_s_per_m() * actuator.mechanical_time_s();
-        SPEED_BY_POSITION * position_gain_per_s * volts
+        f64::from(SPEED_BY_POSITION) * position_gain_per_s * volts
     }
 
     /// The time of the integral to a position loop, s.
@@ -175,7 +172,7 @@ fn phase_margin_deg(open: impl Fn(f64) -> Complex) -> f64 {
 mod tests {
     use super::{Complex, ServoLoop, phase_margin_deg};
     use crate::actuator::Actuator;
-    use leg_firmware::settings::Servo;
+    use leg_firmware::settings::{SPEED_BY_POSITION, Servo};
     use nalgebra::ComplexField;
 
     /// An integrator with a delay crosses at its gain: the margin is 90° less what the delay takes.

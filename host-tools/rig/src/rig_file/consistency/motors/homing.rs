@@ -1,0 +1,50 @@
+//! Whether the motors can home the leg as fast as the settings ask.
+
+use super::Motor;
+use crate::number::{decimal, plain};
+use crate::rig_file::derived::two_digits_above;
+use leg_firmware::control::SHOWN_PART;
+use leg_firmware::settings::CurrentOutput;
+
+impl Motor<'_> {
+    /// A motor has to stop as its tendon becomes taut.
+    pub(super) fn check_homing_speed(&mut self) {
+        let homing = decimal(self.gains.homing.speed_m_per_s);
+        let highest = 0.5 * decimal(self.gains.servo.speed_m_per_s);
+        if homing > highest {
+            let keys = [
+                "control.homing.speed_m_per_s",
+                "control.servo.speed_m_per_s",
+            ];
+            let text = format!(
+                "`{}` ({}) is more than half of `{}`, and homing may fail as tendons are pulled too hard before their motors stop: give at most {}",
+                keys[0],
+                plain(homing),
+                keys[1],
+                plain(highest)
+            );
+            self.warn(&keys, text);
+        }
+    }
+
+    /// An output that is silent in short pulses shows a motor that homes.
+    pub(super) fn check_shown(&mut self) {
+        let actuator = &self.basis.actuator;
+        if actuator.current_output != CurrentOutput::MagnitudeWhenDriven {
+            return;
+        }
+        let shown_v = f64::from(SHOWN_PART) * actuator.supply_v;
+        let back_emf_v_s_per_m = decimal(self.gains.servo.back_emf_v_s_per_m);
+        let speed = decimal(self.gains.homing.speed_m_per_s);
+        if speed * back_emf_v_s_per_m < shown_v {
+            let text = format!(
+                "`control.homing.speed_m_per_s` ({}) turns a motor without a load by pulses that are too short for its current \
+                 output, and its ceiling is kept by counts and `resistance_ohm` alone: {} would do",
+                plain(speed),
+                plain(two_digits_above(shown_v / back_emf_v_s_per_m.max(1e-9)))
+            );
+            let keys = ["control.homing.speed_m_per_s", "actuator.current_output"];
+            self.warn(&keys, text);
+        }
+    }
+}
