@@ -32,6 +32,15 @@ pub fn longest_move(settings: &Settings) -> Duration {
     longer(USUAL_MOVE, turn_s + pretension_s + filters_s)
 }
 
+/// Longest way of a leg straight down, and of its tendons until they are relaxed.
+#[must_use]
+pub fn longest_disarm(settings: &Settings) -> Duration {
+    let limits = &settings.limits;
+    let relaxing_s = limits.relax_travel_m / limits.ramp_m_per_s;
+    let relaxing = Duration::try_from_secs_f32(2.0 * relaxing_s).unwrap_or(DAY);
+    longest_move(settings).saturating_add(relaxing).min(DAY)
+}
+
 /// Longest homing, until the leg begins to be tensioned.
 #[must_use]
 pub fn longest_homing(settings: &Settings) -> Duration {
@@ -52,7 +61,7 @@ fn longer(usual: Duration, parts_s: f32) -> Duration {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-    use super::{DAY, USUAL_HOMING, USUAL_MOVE, longest_homing, longest_move};
+    use super::{DAY, USUAL_HOMING, USUAL_MOVE, longest_disarm, longest_homing, longest_move};
     use leg_firmware::settings::Settings;
 
     #[test]
@@ -66,6 +75,14 @@ mod tests {
         settings.motion.speed_rad_per_s = 0.8;
         settings.motion.pretension_rate_n_per_s = 0.1;
         assert!(longest_move(&settings).as_secs_f32() > 2.0 * 1_400.0);
+        let relaxing = longest_disarm(&settings) - longest_move(&settings);
+        assert!((relaxing.as_secs_f32() - 2.0).abs() < 1e-3, "{relaxing:?}");
+        settings.limits.ramp_m_per_s = 1e-5;
+        let relaxing = longest_disarm(&settings) - longest_move(&settings);
+        assert!(
+            (relaxing.as_secs_f32() - 1_000.0).abs() < 1.0,
+            "{relaxing:?}"
+        );
         settings.homing.settle_time_s = 60.0;
         settings.homing.average_time_s = 60.0;
         assert!(longest_homing(&settings).as_secs_f32() > 6.0 * 120.0);

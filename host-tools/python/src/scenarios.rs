@@ -87,8 +87,8 @@ fn scenario_of(argument: &Bound<'_, PyAny>) -> PyResult<Scenario> {
 /// seed: of the sensors' noise; the scenario's if left out.
 ///
 /// Gives `title`, `passed`, `measurements` (`name`, `value`, `unit`, `between`, `time_s`, `passed` of each), `faults` and
-/// `unexpected_faults` by name, `stopped` (why it ended before its last step, or None), `tension_range_n`, `ticks`, and
-/// `bits`: a hash of all that the firmware decided, which is equal where every bit of it is.
+/// `unexpected_faults` by name, `refused` (the commands that the leg refused, when and why), `stopped` (why it ended before its last
+/// step, or None), `tension_range_n`, `ticks`, and `bits`: a hash of all that the firmware decided, which is equal where every bit of it is.
 ///
 /// Raises ScenarioError and RigError for a file that is refused, at its place.
 #[pyfunction]
@@ -134,5 +134,7 @@ pub fn run_scenario<'py>(
     result.set_item("faults", faults)?;
     let unexpected: Vec<_> = names(summary.unexpected).collect();
     result.set_item("unexpected_faults", unexpected)?;
+    let refused: Vec<_> = summary.refused.iter().map(ToString::to_string).collect();
+    result.set_item("refused", refused)?;
     Ok(result)
 }

@@ -2,7 +2,7 @@
 
 use crate::signal_log::SignalLog;
 use crate::signals::Snapshot;
-use leg_base::longest_times::{longest_homing, longest_move};
+use leg_base::longest_times::{longest_disarm, longest_homing, longest_move};
 use leg_base::settling::Settling;
 use leg_base::timed_path::TimedPath;
 use leg_firmware::command::{Command, CommandRefusal, Compensation};
@@ -292,6 +292,11 @@ impl Session {
     /// Longest move, with all that belongs to it, by the leg's settings, s.
     pub fn move_s(&self) -> f64 {
         longest_move(&self.settings).as_secs_f64()
+    }
+
+    /// The same of a disarm.
+    pub fn disarm_s(&self) -> f64 {
+        longest_disarm(&self.settings).as_secs_f64()
     }
 
     /// The same of a homing.

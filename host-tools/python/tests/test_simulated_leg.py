@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tendon_leg import SIGNALS, STATES, TICKS_PER_SECOND, LegError, LegFault, LegTimeout, Refused, SimulatedLeg
+from tendon_leg import SIGNALS, STATES, TICKS_PER_SECOND, LegError, LegFault, LegTimeout, Refused, Rig, SimulatedLeg
 
 #: Of a thread of Linux that reads it: ns on a processor, ns that it waited for one, and how often.
 THREAD_TIMES = Path("/proc/thread-self/schedstat")
@@ -45,6 +45,19 @@ def test_a_slack_leg_is_homed_moved_stopped_cleared_and_disarmed():
     assert leg.state == "active"
     leg.disarm()
     assert leg.state == "disarmed"
+
+
+def test_slow_settings_have_the_time_that_they_take():
+    values = Rig("table1").to_dict()
+    values["control"] = {"motion": {"pretension_rate_n_per_s": 0.5}, "limits": {"ramp_m_per_s": 2e-5}}
+    leg = SimulatedLeg(Rig.from_dict(values))
+    leg.arm()
+    begun_s = leg.time_s
+    leg.pretension(110.0)
+    assert leg.time_s - begun_s == pytest.approx(80.0, abs=5.0)
+    begun_s = leg.time_s
+    leg.disarm()
+    assert leg.state == "disarmed" and leg.time_s - begun_s > 60.0
 
 
 def test_a_refusal_has_the_firmwares_words():

@@ -104,12 +104,7 @@ fn faults_text(summary: &Summary) -> String {
 
 /// A line for each command that the leg refused; nothing without one.
 fn refused_text(refused: &[RefusedCommand]) -> String {
-    let line = |refused: &RefusedCommand| {
-        format!(
-            "Refused: {} ({:.3} s): {}\n",
-            refused.command, refused.at_s, refused.reason
-        )
-    };
+    let line = |refused: &RefusedCommand| format!("Refused: {refused}\n");
     refused.iter().map(line).collect()
 }
 

@@ -491,8 +491,8 @@ def run_scenario(
     seed: of the sensors' noise; the scenario's if left out.
 
     Gives `title`, `passed`, `measurements` (`name`, `value`, `unit`, `between`, `time_s`, `passed` of each), `faults` and
-    `unexpected_faults` by name, `stopped` (why it ended before its last step, or None), `tension_range_n`, `ticks`, and
-    `bits`: a hash of all that the firmware decided, which is equal where every bit of it is.
+    `unexpected_faults` by name, `refused` (the commands that the leg refused, when and why), `stopped` (why it ended before its last
+    step, or None), `tension_range_n`, `ticks`, and `bits`: a hash of all that the firmware decided, which is equal where every bit of it is.
 
     Raises ScenarioError and RigError for a file that is refused, at its place.
     """

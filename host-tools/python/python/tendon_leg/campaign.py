@@ -23,7 +23,7 @@ from .errors import LegError
 RUN_KEYS = ("scenario", "rig", "seed")
 
 #: What a row says of its run, which no other key of a case can be called.
-RESULT_KEYS = ("title", "passed", "stopped", "faults", "unexpected_faults", "ticks", "bits", "error", "repeat")
+RESULT_KEYS = ("title", "passed", "stopped", "faults", "unexpected_faults", "refused", "ticks", "bits", "error", "repeat")
 
 
 @functools.cache
@@ -65,7 +65,7 @@ def campaign(
         runs them on a cluster, whose workers need this package.
     progress: called with each row as it ends.
 
-    A row has `scenario` and `rig` by name (of a text its title), the case's own keys, `title`, `passed`, `stopped`, `faults`, `unexpected_faults`, `ticks`, `bits`, a column for
+    A row has `scenario` and `rig` by name (of a text its title), the case's own keys, `title`, `passed`, `stopped`, `faults`, `unexpected_faults`, `refused`, `ticks`, `bits`, a column for
     each measurement by its name, `error` (why there is no result, or None) and, where it did not pass, `repeat`.
     Raises ValueError before anything runs: for a case that is none, by its number, and for a directory that cannot be one.
     """

@@ -155,7 +155,7 @@ impl SimulatedLeg {
             session.leave_path();
             session.command(&Command::Disarm)?;
             if wait {
-                session.reach(State::Disarmed, "relax its tendons", session.move_s())?;
+                session.reach(State::Disarmed, "relax its tendons", session.disarm_s())?;
             }
             Ok(())
         })

@@ -7,6 +7,7 @@ use crate::shadow::Divergence;
 use leg_firmware::supervisor::Fault;
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
+use std::fmt;
 
 /// Why a simulation came to no end, or could not start.
 #[derive(Debug, thiserror::Error)]
@@ -81,6 +82,12 @@ pub struct RefusedCommand {
     pub at_s: f64,
     /// Why it was refused.
     pub reason: String,
+}
+
+impl fmt::Display for RefusedCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({:.3} s): {}", self.command, self.at_s, self.reason)
+    }
 }
 
 /// The leg at a time, for plots.
