@@ -52,7 +52,7 @@ pub const NOMINAL_BIT_RATE: u32 = 1_000_000;
 /// Bit rate of the payload, bit/s. Every node on the bus has the same.
 pub const DATA_BIT_RATE: u32 = 5_000_000;
 
-/// Where every node on the bus samples a bit, of either rate, in thousandths of it. Nodes change the rate at their sample points: one that samples later
+/// Where every node on the bus samples a bit, of either rate, in thousandths of it, as near as its clock allows. Nodes change the rate at their sample points: one that samples later
 /// than the sender finds the bit before the payload at its end, or the next one.
 pub const SAMPLE_POINT_PERMILLE: u32 = 750;
 

@@ -15,7 +15,8 @@ pub use gains::{Gains, SECTIONS, SERVO};
 pub use out_of_range::OutOfRange;
 pub use recorded::{RECORDED_SIGNALS, RecordedSignal, SignalSet};
 pub use sections::{
-    AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, SPEED_BY_POSITION, Servo,
+    AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, POSITION_GAIN_MAX_PER_S,
+    SPEED_BY_POSITION, Servo,
 };
 pub use tendon::TendonParameters;
 

@@ -25,8 +25,11 @@ const PAUSE_CYCLES: u32 = CLOCK_HZ / 2 / 1_000_000;
 /// How long the crystal may take to start, in steps of a millisecond at least: its maker gives 10 ms.
 const CRYSTAL_STEPS: u32 = 100;
 
-/// Cycles of the 16 MHz at which the chip starts that are a millisecond at least.
-const CRYSTAL_STEP_CYCLES: u32 = 16_000;
+/// The chip starts with its own oscillator.
+pub const START_HZ: u32 = 16_000_000;
+
+/// Cycles of it that are a millisecond at least.
+const CRYSTAL_STEP_CYCLES: u32 = START_HZ / 1_000;
 
 /// What TIM15, by which embassy's tasks wait, divides the full clock by.
 const TASK_TIMER_DIVISOR: u16 = (CLOCK_HZ / TASK_TIMER_HZ) as u16;
@@ -116,6 +119,11 @@ fn double_speed() {
 /// oscillator, and an NMI is raised.
 pub fn watch() {
     pac::RCC.cr().modify(|w| w.set_csson(true));
+}
+
+/// Whether the chip runs from the oscillator with which it starts.
+pub fn at_start() -> bool {
+    pac::RCC.cfgr().read().sws() == Sysclk::HSI
 }
 
 /// Whether the crystal has stopped.

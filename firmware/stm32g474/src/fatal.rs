@@ -19,8 +19,9 @@ const HASTY_FAILURES: u32 = 3;
 /// How long it is put off, in steps of 0.5 ms at least.
 const REST_STEPS: u32 = 2_000;
 
-/// Rounds of the loop of `delay` in a step. The core takes two to four cycles for one: 0.5 to 1 ms.
+/// Rounds of the loop of `delay` in a step. The core takes two to four cycles for one: 0.5 to 1 ms at the full clock, and about as long at that of a start.
 const REST_STEP_ROUNDS: u32 = CLOCK_HZ / 4_000;
+const REST_STEP_ROUNDS_AT_START: u32 = clocks::START_HZ / 4_000;
 const _: () = assert!(4 * REST_STEP_ROUNDS < tick_watchdog::TIMEOUT_CYCLES * 63 / 64);
 
 /// Set by the first failure: a second one, say while the first is reported, ends at once.
@@ -97,10 +98,15 @@ pub fn end(text: &ShortText) -> ! {
 
 /// Waits, and keeps the watchdogs quiet if they run already.
 fn rest() {
+    let rounds = if clocks::at_start() {
+        REST_STEP_ROUNDS_AT_START
+    } else {
+        REST_STEP_ROUNDS
+    };
     for _ in 0..REST_STEPS {
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
         tick_watchdog::refresh_if_started();
-        cortex_m::asm::delay(REST_STEP_ROUNDS);
+        cortex_m::asm::delay(rounds);
     }
 }
 

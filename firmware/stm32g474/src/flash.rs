@@ -36,7 +36,8 @@ impl CheckedFlash {
     }
 
     /// Reads with a register of ECC errors that has forgotten what was before, and forgets what it finds: RM0440, FLASH_ECCR keeps the place of the first
-    /// error, a corrected one, too, until its flags are cleared, and the NMI tells by that place what was read.
+    /// error, a corrected one, too, until its flags are cleared, and the NMI tells by that place what was read. A word
+    /// of the program that is corrected in this very moment is taken for what is read here, or the other way round: that takes two errors at once.
     fn read_anew(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Error> {
         forget_ecc_errors();
         let read = self.0.blocking_read(offset, bytes);

@@ -49,6 +49,10 @@ pub fn causes(faults: FaultSet) -> String {
     })
 }
 
+/// What a leg does without its host.
+pub const WITHOUT_HOST: &str = "a leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps station \
+                                goes on and moves by itself";
+
 /// What to do about each.
 #[must_use]
 pub fn remedies(faults: FaultSet) -> String {

@@ -8,7 +8,7 @@ use crate::board::report;
 use crate::connection::LegArgs;
 use crate::options::Options;
 use crate::output::note;
-use leg_base::description::hex;
+use leg_base::description::{WITHOUT_HOST, hex};
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_boards::image::workspace_root;
@@ -103,8 +103,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     bridge::run(transport.as_mut(), &pages, hello, host, &cancel).map_err(|error| {
         Failure::failed(
             format!("the connection to {name} is lost: {error}"),
-            "look at the cable, and start it again; a leg that homes or follows commands is held by itself, \
-             one that jogs is switched off; one that keeps station goes on and moves by itself",
+            format!("look at the cable, and start it again; {WITHOUT_HOST}"),
         )
     })
 }

@@ -214,8 +214,8 @@ impl Flash {
     /// cleared, a corrected one, too: RM0440, FLASH_ECCR.
     fn note_error(&mut self, offset: u32, [below, above]: [FieldPlace; 2]) {
         let offset = double_word_of(offset);
-        let both_alike = self.dual_bank || offset.is_multiple_of(2 * DOUBLE_WORD);
-        let flag = if both_alike { below } else { above };
+        let in_lower_half = self.dual_bank || offset.is_multiple_of(2 * DOUBLE_WORD);
+        let flag = if in_lower_half { below } else { above };
         let before = self.registers.get(self.offsets.eccr) & self.flags.ecc_clearable;
         self.registers.set_value(flag, 1);
         if before != 0 {

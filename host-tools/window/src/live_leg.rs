@@ -19,6 +19,7 @@ use crate::recorder::Recorder;
 use crate::wall_clock;
 use board::Board;
 use frames::{Frames, Numbers};
+use leg_base::description::WITHOUT_HOST;
 use leg_base::tick_time::seconds;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::host_link::{HostId, HostRefusal, HostReply, TelemetryReport};
@@ -382,7 +383,7 @@ impl LiveLeg {
     pub fn failure(&self) -> Option<String> {
         if let Some(why) = &self.lost {
             return Some(format!(
-                "The connection is lost: {why}. A leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps station goes on and moves by itself."
+                "The connection is lost: {why}. Without its host {WITHOUT_HOST}."
             ));
         }
         let silent = self.now_s - self.heard_s.unwrap_or(self.now_s) > SILENCE_S;

@@ -4,6 +4,7 @@ use crate::live_leg::LiveLeg;
 use crate::places::place;
 use crate::theme::palette;
 use egui::{Frame, Label, RichText, Stroke, Ui};
+use leg_base::description::WITHOUT_HOST;
 
 /// Shows it, and who drives.
 pub fn show(ui: &mut Ui, leg: &mut LiveLeg) {
@@ -27,7 +28,7 @@ pub fn show(ui: &mut Ui, leg: &mut LiveLeg) {
         let clicked = switch.clicked();
         switch
             .on_hover_text(
-                "This page then drives a real machine: nobody may reach into it. Locked again, a leg that homes or follows commands is held by itself, one that jogs is switched off; one that keeps station goes on and moves by itself.",
+                format!("This page then drives a real machine: nobody may reach into it. Locked again, {WITHOUT_HOST}."),
             )
             .on_disabled_hover_text("One page drives at a time, while the leg answers.");
         if clicked {

@@ -66,12 +66,16 @@ fields! {
 /// How many times faster than the position loop a servo's speed loop is, where the settings follow from a motor's data.
 pub const SPEED_BY_POSITION: f32 = 4.5;
 
+/// The highest gain of the position loop there, 1/s.
+pub const POSITION_GAIN_MAX_PER_S: f32 = 120.0;
+
 impl Servo {
-    /// What the highest current accelerates the tendon by at most, m/s²: by the gains, which follow from the rotor's inertia. Gains that are lower than
-    /// these make it more.
+    /// The most that the highest current accelerates the tendon by, m/s², as far as the gains tell it: that of the speed loop follows from the rotor's inertia.
+    /// Where the position loop was made softer it is more than that, and where the speed loop was made stiffer less.
     #[must_use]
     pub fn acceleration_m_per_s2(&self) -> f32 {
-        let v_s2_per_m = self.speed_gain_v_s_per_m / (SPEED_BY_POSITION * self.position_gain_per_s);
+        let position_gain_per_s = self.position_gain_per_s.max(POSITION_GAIN_MAX_PER_S);
+        let v_s2_per_m = self.speed_gain_v_s_per_m / (SPEED_BY_POSITION * position_gain_per_s);
         self.current_a * self.resistance_ohm / v_s2_per_m
     }
 }

@@ -84,7 +84,7 @@ faults! {
         name: "jump of a tension",
         reaction: Hold,
         cause: "a tension changes by jump_n within a millisecond, or by three tenths of it while lengths and tensions come to disagree",
-        remedy: "look for a cut or slipped tendon; where the tension does not come back, disarm the leg, clear the fault and home",
+        remedy: "look for a cut or slipped tendon; where the tension does not come back, disarm the leg, clear the fault and home; where it does, clear the fault",
         clears: Command,
     }
     4 Residual {

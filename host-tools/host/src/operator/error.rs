@@ -1,7 +1,7 @@
 //! Why an operator did not get what it asked for.
 
 use crate::leg_report::pose_words;
-use leg_base::description::{causes, faults, hex, remedies, state};
+use leg_base::description::{WITHOUT_HOST, causes, faults, hex, remedies, state};
 use leg_base::failure::Failure;
 use leg_base::refusal;
 use leg_base::settling::same_direction;
@@ -74,8 +74,7 @@ impl OperatorError {
         match self {
             Self::ConnectionLost(name, source) => Failure::refused(
                 format!("the connection to {name} is lost: {source}"),
-                "plug the board in again; without its host a leg that homes or follows commands is held by itself, one that jogs \
-                 is switched off; one that keeps station goes on and moves by itself",
+                format!("plug the board in again; without its host {WITHOUT_HOST}"),
             ),
             Self::NoAnswer(name) => Failure::refused(
                 format!("{name} does not answer"),
@@ -164,8 +163,7 @@ impl OperatorError {
             ),
             Self::NotStopped(name) => Failure::failed(
                 format!("{name} did not acknowledge the stop"),
-                "press the emergency stop; without its host a leg that homes or follows commands is held by itself, one that jogs \
-                 is switched off; one that keeps station goes on and moves by itself",
+                format!("press the emergency stop; without its host {WITHOUT_HOST}"),
             ),
             Self::NothingRecorded => Failure::refused(
                 "the leg's settings have it record nothing",
@@ -249,6 +247,7 @@ fn angle_deg(a: [f32; 2], b: [f32; 2]) -> f64 {
 
 fn remedies_and_clear(present: FaultSet) -> String {
     let remedies = remedies(present);
+    // One of them says so itself.
     if remedies.contains("clear the fault") {
         return remedies;
     }

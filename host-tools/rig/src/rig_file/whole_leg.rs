@@ -72,7 +72,7 @@ fn check_inertia(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     ))
 }
 
-/// Targets keep off the highest tension by the band in which a motor is slowed down.
+/// Pretensions keep off the highest tension by the band in which a motor is slowed down.
 fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     // As the firmware judges it, in f32.
     let (f_min_n, f_max_n) = (file.f_min_n as f32, file.f_max_n as f32);
@@ -91,18 +91,18 @@ fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
                 "give a smaller band, or a higher `f_max_n`",
             ));
         }
-        if file.pretension_n as f32 > f_max_n - servo.f_max_band_n {
-            let highest_n = file.f_max_n - decimal(servo.f_max_band_n);
+        let highest_n = f_max_n - servo.f_max_band_n;
+        if file.pretension_n as f32 > highest_n {
             return Err(TomlError::new(
                 root.place(&["tendon", "pretension_n"]).unwrap_or(0..0),
                 format!(
-                    "no target comes nearer to `tendon.f_max_n` ({}) than `control.servo.f_max_band_n` ({}), so `pretension_n` ({}) is not \
+                    "no pretension is led nearer to `tendon.f_max_n` ({}) than `control.servo.f_max_band_n` ({}), so `pretension_n` ({}) is not \
                      reached",
                     plain(file.f_max_n),
                     plain(decimal(servo.f_max_band_n)),
                     plain(file.pretension_n)
                 ),
-                format!("give at most {}", plain(highest_n)),
+                format!("give at most {}", plain(decimal(highest_n))),
             ));
         }
     }
@@ -204,6 +204,25 @@ mod tests {
             let line = format!("pretension_n = {pretension_n}");
             changed(&[("pretension_n = 70", &line)], LEG)
         };
+        // What is offered is taken, as the firmware's f32 rounds it, too.
+        let odd = |pretension_n| {
+            let lines = [
+                ("f_max_n = 150", String::from("f_max_n = 22.8")),
+                (
+                    "pretension_n = 70",
+                    format!("pretension_n = {pretension_n}"),
+                ),
+            ];
+            let lines = lines
+                .each_ref()
+                .map(|(line, other)| (*line, other.as_str()));
+            changed(&lines, "\n[control.servo]\nf_max_band_n = 3.7\n")
+        };
+        let error = RigFile::parse("a.toml", &odd("20"))
+            .unwrap_err()
+            .render(false);
+        let (_, offered) = error.split_once("give at most ").unwrap();
+        RigFile::parse("a.toml", &odd(offered.trim())).unwrap();
         let sentence = "so `pretension_n` (147) is not reached";
         assert_refused(
             &text(147),

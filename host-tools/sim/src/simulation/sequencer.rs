@@ -4,7 +4,7 @@ use super::extremes::Extremes;
 use super::follower::Follower;
 use super::measure::measure;
 use super::summary::SimulationError;
-use super::test_stand::TestStand;
+use super::test_stand::{COMMAND_S, TestStand};
 use crate::scenario::{PushTest, Scenario, Step, TestStep};
 use leg_base::description;
 use leg_base::timed_path::TimedPath;
@@ -13,9 +13,6 @@ use nalgebra::Vector3;
 
 /// Time in which the force of a push test rises, s: slow enough that the leg does not swing.
 const PUSH_TEST_RISE_S: f64 = 0.5;
-
-/// Time that a command takes to reach the leg, s, at most.
-const COMMAND_S: f64 = 0.02;
 
 /// Longest time that a path takes, with the way to its start and to rest, s.
 const FOLLOW_TIMEOUT_S: f64 = 400.0;
@@ -69,7 +66,8 @@ impl<'a> Sequencer<'a> {
             self.began_s = stand.leg.time_s();
             self.arrived_s = None;
         }
-        Ok(None)
+        // What became of a command in the last step.
+        Ok(stand.awaits_answer().then_some(self.steps.len()))
     }
 
     /// Whether a step is done.

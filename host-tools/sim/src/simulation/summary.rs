@@ -73,20 +73,32 @@ impl ScenarioMeasurement {
     }
 }
 
-/// A command that the leg refused.
+/// A command that the leg refused, or the same one again and again.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RefusedCommand {
     /// What it was.
     pub command: &'static str,
-    /// When it was sent, s.
+    /// When it was sent first, s.
     pub at_s: f64,
+    /// When it was sent last, s.
+    pub until_s: f64,
+    /// How often.
+    pub times: usize,
     /// Why it was refused.
     pub reason: String,
 }
 
 impl fmt::Display for RefusedCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({:.3} s): {}", self.command, self.at_s, self.reason)
+        let (command, at_s, reason) = (self.command, self.at_s, &self.reason);
+        match self.times {
+            1 => write!(f, "{command} ({at_s:.3} s): {reason}"),
+            times => write!(
+                f,
+                "{command} ({at_s:.3} to {:.3} s, {times} times): {reason}",
+                self.until_s
+            ),
+        }
     }
 }
 
@@ -138,6 +150,24 @@ impl SimulationError {
 }
 
 impl Summary {
+    /// Notes a command that the leg refused, with the last one where that was the same.
+    pub(super) fn note_refused(&mut self, command: &'static str, at_s: f64, reason: String) {
+        let last = self.refused.last_mut();
+        match last.filter(|last| last.command == command && last.reason == reason) {
+            Some(last) => {
+                last.until_s = at_s;
+                last.times += 1;
+            }
+            None => self.refused.push(RefusedCommand {
+                command,
+                at_s,
+                until_s: at_s,
+                times: 1,
+                reason,
+            }),
+        }
+    }
+
     /// Whether it came to its end, every value is where it must be, no fault came that is not expected, and the shadow in f64
     /// stayed in the firmware's state and answered as it did.
     #[must_use]

@@ -2,7 +2,7 @@
 
 use super::extremes::{Extremes, NO_RANGE, range_with_tensions};
 use super::follow_error::FollowError;
-use super::{Comparison, RefusedCommand, Sample, ScenarioMeasurement, SimulationError, Summary};
+use super::{Comparison, Sample, ScenarioMeasurement, SimulationError, Summary};
 use crate::emulated_leg::EmulatedLeg;
 use crate::hosted_leg::HostedLeg;
 use crate::link::Link;
@@ -24,6 +24,9 @@ const AVERAGE_TICKS: usize = 2000;
 
 /// Ticks between two samples.
 pub const SAMPLE_TICKS: u32 = 16;
+
+/// Time that a command takes to reach the leg, s, at most.
+pub(super) const COMMAND_S: f64 = 0.02;
 
 /// Everything but the steps.
 pub(super) struct TestStand<'a> {
@@ -91,17 +94,20 @@ impl<'a> TestStand<'a> {
         Ok(())
     }
 
+    /// Whether the last command may be answered yet.
+    pub fn awaits_answer(&self) -> bool {
+        let last = self.unanswered.last();
+        last.is_some_and(|(_, _, at_s)| self.leg.time_s() - at_s < COMMAND_S)
+    }
+
     /// Notes which commands the leg has refused in the last tick.
     fn note_refusals(&mut self) {
         for answer in self.leg.answers() {
             let sent = |(number, ..): &mut (u16, _, _)| *number == answer.number;
             let answered = self.unanswered.extract_if(.., sent).next();
             if let (Some((_, command, at_s)), Err(refusal)) = (answered, answer.result) {
-                self.summary.refused.push(RefusedCommand {
-                    command,
-                    at_s,
-                    reason: refusal::description(&refusal)[0].clone(),
-                });
+                let [reason, _] = refusal::description(&refusal);
+                self.summary.note_refused(command, at_s, reason);
             }
         }
     }

@@ -28,10 +28,10 @@ const PAYING_OUT_AWAY_PART: f32 = 0.9;
 /// tick: on the paper's rig 3.4 µm.
 const STEP_PART: f32 = 0.9;
 
-/// The least of that, as a part of what the highest current gives the motor in a cycle: by half of it a motor goes farther that turns about, and its tracked
+/// The least of that, as a multiple of what the highest current gives the motor in a cycle: by half of it a motor goes farther that turns about, and its tracked
 /// speed lags by more. Without it one that is set to be slow, or that has a light rotor behind a coarse screw, was taken for a counter that jumps
 /// (`tests/suite/rig/other_motors.rs`).
-const GAIN_PART: f32 = 2.5;
+const ACCELERATED_MULTIPLE: f32 = 2.5;
 
 /// The same in counts where these are coarse: a motor that starts counts one at once.
 const STEP_COUNTS: f32 = 1.5;
@@ -151,7 +151,12 @@ impl<T: Scalar> AxisMonitor<T> {
                 jump_n: limits.jump_n.into(),
                 step_m: T::from(
                     (STEP_PART * servo.speed_m_per_s * TICK_S)
-                        .max(GAIN_PART * servo.acceleration_m_per_s2() * CYCLE_S * CYCLE_S)
+                        .max(
+                            ACCELERATED_MULTIPLE
+                                * servo.acceleration_m_per_s2()
+                                * CYCLE_S
+                                * CYCLE_S,
+                        )
                         .max(STEP_COUNTS * m_per_count.abs()),
                 ),
                 following_m: limits.following_m.into(),

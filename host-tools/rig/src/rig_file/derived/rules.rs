@@ -2,7 +2,7 @@
 
 use super::{Basis, MotorGains, ServoLoop, two_digits_below};
 use leg_firmware::control::{FRICTION_ALLOWANCE, PULL_ALLOWANCE};
-use leg_firmware::settings::Field;
+use leg_firmware::settings::{Field, POSITION_GAIN_MAX_PER_S};
 use std::f64::consts::TAU;
 
 /// How one gain is derived.
@@ -79,7 +79,7 @@ rules! {
     Each servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
         |basis, gains| (0.95 * reachable_m_per_s(basis, gains)).min(0.03);
     Each servo.position_gain_per_s = "the highest at which speed and position loop keep a phase margin of 45°, at most 120",
-        |basis, gains| two_digits_below(ServoLoop::new(&basis.actuator, &gains.servo).highest_gain_per_s(MARGIN_DEG)).min(120.0);
+        |basis, gains| two_digits_below(ServoLoop::new(&basis.actuator, &gains.servo).highest_gain_per_s(MARGIN_DEG)).min(POSITION_GAIN_MAX_PER_S.into());
     Each servo.speed_gain_v_s_per_m = "4.5 position_gain_per_s × 2π gear_ratio resistance_ohm inertia_kg_m2 / (torque_constant_nm_per_a lead_m)",
         |basis, gains| ServoLoop::speed_gain_v_s_per_m(&basis.actuator, f64::from(gains.servo.position_gain_per_s));
     Each servo.integral_time_s = "2.4 / position_gain_per_s",
@@ -94,6 +94,8 @@ rules! {
         |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
     Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
         |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains));
+    Least homing.f_max_n = "f_max_n, at most 15" exact,
+        |basis, _| basis.f_max_n.min(15.0);
     Least motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
         |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
     Least limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
