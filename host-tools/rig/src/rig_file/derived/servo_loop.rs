@@ -172,7 +172,7 @@ fn phase_margin_deg(open: impl Fn(f64) -> Complex) -> f64 {
 mod tests {
     use super::{Complex, ServoLoop, phase_margin_deg};
     use crate::actuator::Actuator;
-    use leg_firmware::settings::{SPEED_BY_POSITION, Servo};
+    use leg_firmware::settings::Servo;
     use nalgebra::ComplexField;
 
     /// An integrator with a delay crosses at its gain: the margin is 90° less what the delay takes.
