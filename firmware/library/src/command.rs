@@ -113,7 +113,10 @@ impl CommandRefusal {
                 "a number is not finite or not above zero",
                 "give another number",
             ],
-            Self::Superseded => ["a stop came first", "find out why, then command again"],
+            Self::Superseded => [
+                "a stop or a disarm came first",
+                "find out why, then command again",
+            ],
             Self::Point(refusal) => refusal.description(),
             Self::Jog(refusal) => refusal.description(),
             Self::NotDisarmed(State::Boot) => ["the leg is still starting", "ask again"],

@@ -10,6 +10,9 @@ pub const FILE_BYTES_MAX: u64 = 1 << 20;
 /// The longest line of a program or a person, bytes.
 pub const LINE_BYTES_MAX: usize = 64 * 1024;
 
+/// The longest line that is skipped as too long, bytes: an input without lines has to come to an end.
+const SKIPPED_BYTES_MAX: u64 = 64 << 20;
+
 /// Reads a text file of at most `bytes_max`.
 ///
 /// # Errors
@@ -46,7 +49,7 @@ pub fn too_long() -> String {
 /// The next line; none at the end of the input. No more than [`LINE_BYTES_MAX`] of it is kept.
 ///
 /// # Errors
-/// The system's.
+/// The system's; [`ErrorKind::InvalidData`] with a sentence where a line is longer than 64 MiB.
 pub fn next_line(input: &mut (impl BufRead + ?Sized)) -> io::Result<Option<Line>> {
     let mut line = Vec::new();
     // Two more: the newline, and the one byte too many.
@@ -57,7 +60,11 @@ pub fn next_line(input: &mut (impl BufRead + ?Sized)) -> io::Result<Option<Line>
     if line.last() == Some(&b'\n') {
         line.pop();
     } else if line.len() > LINE_BYTES_MAX {
-        input.skip_until(b'\n')?;
+        let skipped = input.take(SKIPPED_BYTES_MAX).skip_until(b'\n')?;
+        if skipped as u64 == SKIPPED_BYTES_MAX {
+            let sentence = format!("a line is longer than {} MiB", SKIPPED_BYTES_MAX >> 20);
+            return Err(io::Error::new(ErrorKind::InvalidData, sentence));
+        }
     }
     if line.len() > LINE_BYTES_MAX {
         return Ok(Some(Line::TooLong));
@@ -69,7 +76,7 @@ pub fn next_line(input: &mut (impl BufRead + ?Sized)) -> io::Result<Option<Line>
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{FILE_BYTES_MAX, LINE_BYTES_MAX, Line, next_line, read_file};
-    use std::io::ErrorKind;
+    use std::io::{BufReader, ErrorKind};
     use std::path::Path;
 
     #[test]
@@ -78,6 +85,12 @@ mod tests {
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
         assert_eq!(endless.to_string(), "it is larger than 1 MiB");
         assert_eq!(read_file(Path::new("/dev/null"), 1).unwrap(), "");
+    }
+
+    #[test]
+    fn a_line_without_an_end_is_an_error() {
+        let error = next_line(&mut BufReader::new(std::io::repeat(0))).unwrap_err();
+        assert_eq!(error.to_string(), "a line is longer than 64 MiB");
     }
 
     #[test]

@@ -3,10 +3,15 @@
 use cargo_metadata::Message;
 use std::env;
 use std::ffi::OsString;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
 use thiserror::Error;
+
+/// Between two looks at a build.
+const LOOK_TIME: Duration = Duration::from_millis(10);
 
 /// A firmware image, by the board that it is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +51,9 @@ pub enum ImageError {
         /// What it wrote.
         output: String,
     },
+    /// It was not waited for.
+    #[error("the build was ended before it was done; run it again")]
+    Cancelled,
     /// The build made no executable.
     #[error(
         "`cargo {}` made no executable named `{}`; see the alias in .cargo/config.toml",
@@ -92,15 +100,32 @@ impl FirmwareImage {
         self.build_in(&workspace_root())
     }
 
+    /// The same, until `cancelled` says that nobody waits for it any more.
+    ///
+    /// # Errors
+    /// As [`Self::build`]; [`ImageError::Cancelled`].
+    pub fn build_unless(self, cancelled: &dyn Fn() -> bool) -> Result<PathBuf, ImageError> {
+        self.build_watched(&workspace_root(), cancelled)
+    }
+
     /// The same from a copy of the workspace.
     ///
     /// # Errors
     /// [`ImageError`] with what cargo wrote.
     pub fn build_in(self, root: &Path) -> Result<PathBuf, ImageError> {
+        self.build_watched(root, &|| false)
+    }
+
+    fn build_watched(
+        self,
+        root: &Path,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Result<PathBuf, ImageError> {
         if !root.join("firmware/library/Cargo.toml").is_file() {
             return Err(ImageError::NoSources(root.display().to_string()));
         }
-        let output = self.cargo(root).output().map_err(ImageError::NoCargo)?;
+        let output = output_of(&mut self.cargo(root), cancelled).map_err(ImageError::NoCargo)?;
+        let output = output.ok_or(ImageError::Cancelled)?;
         if !output.status.success() {
             return Err(ImageError::Failed {
                 image: self,
@@ -138,4 +163,47 @@ impl FirmwareImage {
                 _ => None,
             })
     }
+}
+
+/// What a program that is run to its end writes; none, and it is killed, where that is not waited for.
+fn output_of(command: &mut Command, cancelled: &dyn Fn() -> bool) -> io::Result<Option<Output>> {
+    command.stdin(Stdio::null());
+    let mut child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    let [stdout, stderr] = [
+        child.stdout.take().map(read_beside),
+        child.stderr.take().map(read_beside),
+    ];
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if cancelled() {
+            child.kill()?;
+            child.wait()?;
+            return Ok(None);
+        }
+        thread::sleep(LOOK_TIME);
+    };
+    let written = |reader: Option<JoinHandle<Vec<u8>>>| {
+        let read = reader.and_then(|reader| reader.join().ok());
+        read.unwrap_or_default()
+    };
+    Ok(Some(Output {
+        status,
+        stdout: written(stdout),
+        stderr: written(stderr),
+    }))
+}
+
+/// Reads to the end in a thread of its own: a pipe that is full stops who writes.
+fn read_beside(mut pipe: impl Read + Send + 'static) -> JoinHandle<Vec<u8>> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        // What was read until an error is what there is.
+        let _ = pipe.read_to_end(&mut bytes);
+        bytes
+    })
 }

@@ -7,10 +7,11 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone, Debug, Default)]
 pub struct CancelFlag(Arc<AtomicBool>);
 
+static ONLY: OnceLock<CancelFlag> = OnceLock::new();
+
 impl CancelFlag {
     /// The one that is set by Ctrl-C and by the end of the terminal.
     pub fn set_by_ctrl_c() -> Self {
-        static ONLY: OnceLock<CancelFlag> = OnceLock::new();
         let make = || {
             let flag = Self::default();
             let set = flag.clone();
@@ -19,6 +20,11 @@ impl CancelFlag {
             flag
         };
         ONLY.get_or_init(make).clone()
+    }
+
+    /// Whether Ctrl-C has set that one; where nobody has asked for it, Ctrl-C ends the process.
+    pub fn ctrl_c_pressed() -> bool {
+        ONLY.get().is_some_and(Self::is_set)
     }
 
     /// Sets it.

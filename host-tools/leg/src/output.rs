@@ -131,8 +131,15 @@ pub(crate) fn print_failure(failure: &Failure, json: bool) {
     if json {
         note(failure_line(failure).trim_end());
     } else {
-        note(&failure.render(io::stderr().is_terminal()));
+        note(&failure.render(shows_colours()));
     }
+}
+
+/// Whether standard error is a terminal that shows colours, and whose user has not declined them (`NO_COLOR`).
+fn shows_colours() -> bool {
+    let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    io::stderr().is_terminal() && !declined && !dumb
 }
 
 /// Prints what clap says of the arguments: help on standard output, an error on standard error.

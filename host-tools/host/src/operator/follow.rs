@@ -9,7 +9,7 @@ use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{PointRefusal, StreamPart};
-use leg_firmware::supervisor::{Fault, FaultSet};
+use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
@@ -189,6 +189,10 @@ impl Operator {
                     }
                 }
                 // What limits the leg on its way down is no matter.
+                OperatorError::Refused(
+                    _,
+                    HostRefusal::Command(CommandRefusal::State(state @ State::RampingDown)),
+                ) => return Err(OperatorError::StoppedByOtherHost(ASKED, state)),
                 error if is_overtaken(&error) => return Err(error),
                 OperatorError::Refused(..) | OperatorError::Faulted(..) => {
                     // Why it no longer follows says more.

@@ -227,12 +227,13 @@ pub(super) fn unlimited(
 pub(super) fn is_overtaken(error: &OperatorError) -> bool {
     matches!(
         error,
-        OperatorError::Refused(
-            _,
-            HostRefusal::OtherHost
-                | HostRefusal::Command(
-                    CommandRefusal::Superseded | CommandRefusal::State(State::RampingDown)
-                )
-        )
+        OperatorError::StoppedByOtherHost(_, State::RampingDown)
+            | OperatorError::Refused(
+                _,
+                HostRefusal::OtherHost
+                    | HostRefusal::Command(
+                        CommandRefusal::Superseded | CommandRefusal::State(State::RampingDown)
+                    )
+            )
     )
 }

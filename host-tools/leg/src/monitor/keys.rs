@@ -52,11 +52,19 @@ impl Keys {
 fn ends(typed: &[u8]) -> bool {
     match typed {
         [] => false,
-        [ESCAPE] => true,
-        // An arrow, say.
-        [ESCAPE, ..] => false,
-        keys => keys.iter().any(|key| matches!(key, &CTRL_C | b'q')),
+        [ESCAPE] | [CTRL_C | b'q' | b'Q', ..] => true,
+        [ESCAPE, rest @ ..] => ends(behind_sequence(rest)),
+        [_, rest @ ..] => ends(rest),
     }
+}
+
+/// What comes behind an arrow, say, whose escape was read: a letter, or ECMA-48's `[` or `O`, parameters and a final byte.
+fn behind_sequence(typed: &[u8]) -> &[u8] {
+    let introduced = typed.strip_prefix(b"[").or(typed.strip_prefix(b"O"));
+    let rest = introduced.unwrap_or(typed);
+    let last = rest.iter().position(|byte| (0x40..=0x7e).contains(byte));
+    last.and_then(|last| rest.get(last + 1..))
+        .unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -71,7 +79,10 @@ mod tests {
             ("\x03", true),
             ("xq", true),
             ("x", false),
-            ("Q", false),
+            ("Q", true),
+            ("\x1b[Aq", true),
+            ("\x1b[1;5A\x1b[Bx", false),
+            ("\x1b[1;5Aq", true),
             ("\x1b[A", false),
             ("\x1bOq", false),
             ("\x1b[", false),

@@ -14,6 +14,9 @@ use leg_firmware::telemetry::Telemetry;
 /// A tendon whose tension changes by less over a step is slack, N: the softest leg changes by some newtons.
 const SLACK_CHANGE_N: f32 = 0.5;
 
+/// How far a motor that is off may creep between two jogs, m: a hundred counts and more, and less than any jog turns one.
+const REST_M: f32 = 1e-4;
+
 /// How often the jogs against a tension are repeated.
 const LOADED_TIMES: u32 = 2;
 
@@ -55,6 +58,7 @@ pub(super) async fn jog_all<L: TunedLeg>(
         plan,
         settings,
         pulled_m: 0.0,
+        rest_m: start.pulled_m,
         turned: false,
         slack_n: [0.0; 3],
         all: Vec::new(),
@@ -99,6 +103,8 @@ struct Jogs<'a, L> {
     settings: &'a Settings,
     /// How far the tendon is pulled in since the beginning, m.
     pulled_m: f32,
+    /// Where each motor rests after the last jog, m.
+    rest_m: [f32; 3],
     /// Whether the last jog turned the motor as it was driven.
     turned: bool,
     /// The tensions with this tendon slack, N.
@@ -306,6 +312,7 @@ impl<L: TunedLeg> Jogs<'_, L> {
         if report.end == JogEnd::CutOff {
             return Err(L::Error::stopped(asked, telemetry.state).into());
         }
+        self.require_rest(&report, &telemetry)?;
         self.pulled_m += self.own(&report.pulled_m);
         self.turned = matches!(report.end, JogEnd::Arrived | JogEnd::Tension(_));
         // To come to pull is what some of them are for.
@@ -320,6 +327,27 @@ impl<L: TunedLeg> Jogs<'_, L> {
                 Err(TuneError::Finding(finding))
             }
             _ => Ok(report),
+        }
+    }
+
+    /// Refuses a leg that another host has used since the last jog: between two of them it is disarmed, and follows nobody.
+    fn require_rest(
+        &mut self,
+        report: &JogReport<f32>,
+        telemetry: &Telemetry<f32>,
+    ) -> Result<(), TuneError<L::Error>> {
+        let before = std::mem::replace(&mut self.rest_m, telemetry.pulled_m);
+        let ways = report.pulled_m.iter().zip(before);
+        let crept = ways.zip(telemetry.pulled_m);
+        let turned = |((way_m, before_m), now_m): ((&f32, f32), f32)| {
+            (now_m - before_m - way_m).abs() > REST_M
+        };
+        match (1..).zip(crept).find(|(_, motor)| turned(*motor)) {
+            None => Ok(()),
+            Some((motor, _)) => Err(TuneError::undetermined(
+                format!("motor {motor} was turned between two jogs"),
+                "end the other program that uses the leg, and let nobody touch it; then measure again",
+            )),
         }
     }
 

@@ -3,8 +3,9 @@
 use super::{deviation, jog, leg, ready_rig};
 use fastrand::Rng;
 use leg_firmware::jog::{JogDemand, JogDrive};
+use leg_host::cancel_flag::CancelFlag;
 use leg_host::jog_report::{findings, slow_voltage_v};
-use leg_host::operator::Operator;
+use leg_host::operator::{HostIdentity, Operator};
 use leg_rig::tune::comparison;
 use std::cell::Cell;
 
@@ -67,5 +68,31 @@ fn a_motor_is_measured_again_where_a_stop_left_its_tendon() {
             let row = rows.iter().find(|row| row.name == name).unwrap();
             assert!(deviation(row) < 0.05, "seed {seed}");
         }
+    }
+}
+
+/// Between two jogs the leg is disarmed, and another host may jog it or home it: what is measured then is of another leg.
+#[test]
+fn a_leg_that_another_host_uses_between_two_jogs_is_not_measured() {
+    let rig = ready_rig(0);
+    for other_motor in 1..=3 {
+        let (line, mut operator, _) = leg(&rig, &rig, 7);
+        let host = HostIdentity {
+            id: 77,
+            sequence: 7_000,
+        };
+        let mut other =
+            Operator::open(Box::new(line.connect()), host, CancelFlag::default()).unwrap();
+        let mut jogs = 0;
+        let error = jog(&mut operator, 1, &mut |_| {
+            jogs += 1;
+            if jogs == 3 {
+                turn(&mut other, other_motor, -2e-3);
+            }
+        })
+        .unwrap_err();
+        let words = format!("{:?}", error.failure());
+        let expected = format!("motor {other_motor} was turned between two jogs");
+        assert!(words.contains(&expected), "{words}");
     }
 }

@@ -75,7 +75,7 @@ fn what_a_stop_came_before_has_failed() {
     assert!(is_failed(&error));
     assert_eq!(
         error.to_string(),
-        "the leg did not follow the path: a stop came first"
+        "the leg did not follow the path: a stop or a disarm came first"
     );
 }
 
