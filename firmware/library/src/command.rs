@@ -53,7 +53,7 @@ pub enum Command {
     /// Stays where it is until a clear, before whatever waits. A leg that is disarmed, held or off is at rest already; one
     /// that ramps down goes on with that, and refuses by its state.
     Stop,
-    /// Leads the leg straight down where its sensors agree, relaxes the tendons and switches the drivers off.
+    /// Leads the leg straight down where its sensors agree and no fault is latched, relaxes the tendons and switches the drivers off.
     Disarm,
     /// Clears the faults whose cause is gone.
     Clear,

@@ -23,6 +23,8 @@ pub(crate) enum LegCommand {
     /// disarmed: keep your hands away. One that keeps station goes on; one whose drivers a fault switched off is disarmed then.
     Clear(LegArgs),
     /// Leads the leg straight down, pays its tendons out and switches the drivers off; the screws hold.
+    ///
+    /// A leg whose sensors disagree, or that has a fault, is paid out where it is: after "no command" clear it first.
     Disarm(LegArgs),
     /// Follows a path in time, streamed as set-points; the leg keeps station then.
     ///
@@ -113,7 +115,7 @@ impl LegCommand {
             Self::Home(leg) => home(leg, options),
             Self::Move(args) => reach(&args.leg, args.goal()),
             Self::Stiffness(args) => reach(&args.leg, args.goal()),
-            Self::Stop(leg) => run(leg, Purpose::Stop, options, Operator::stop),
+            Self::Stop(leg) => run(leg, Purpose::Stop, options, Operator::stop_to_rest),
         }
     }
 }

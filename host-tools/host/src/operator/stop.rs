@@ -24,6 +24,10 @@ const STOPS_LATE_TIME: Duration = Duration::from_secs(2);
 const STILL_TIME: Duration = Duration::from_secs(5);
 const STILL_M: f32 = 1e-6;
 
+/// Between two looks at a leg that a stop brakes, and how many there are at most: it takes some tenths of a second.
+const REST_TIME: Duration = Duration::from_millis(50);
+const REST_LOOKS: u32 = 20;
+
 /// Longest wait for a leg that moves.
 const LONGEST_TIME: Duration = Duration::from_secs(24 * 3600);
 
@@ -40,6 +44,24 @@ impl Operator {
         });
         self.drives = false;
         stopped.map(|report| report.telemetry)
+    }
+
+    /// The same, and waits until its motors stand: a stop brakes them for a moment. Of a leg that ramps down they do not.
+    ///
+    /// # Errors
+    /// As [`Self::stop`].
+    pub fn stop_to_rest(&mut self) -> Result<Telemetry<f32>, OperatorError> {
+        let mut now = self.stop()?;
+        self.uncancelled(|operator| {
+            for _ in 0..REST_LOOKS {
+                operator.pause(REST_TIME)?;
+                let before = std::mem::replace(&mut now, operator.telemetry()?.telemetry);
+                if !travelled(&before.pulled_m, &now.pulled_m) {
+                    break;
+                }
+            }
+            Ok(now)
+        })
     }
 
     /// The same without reading telemetry.
@@ -145,10 +167,8 @@ impl Operator {
             if done(telemetry) {
                 return Ok(true);
             }
-            let pulled_m = telemetry.pulled_m;
-            let mut pairs = pulled_m.iter().zip(&moved.1);
-            if pairs.any(|(pulled, before)| (pulled - before).abs() > STILL_M) {
-                moved = (now, pulled_m);
+            if travelled(&moved.1, &telemetry.pulled_m) {
+                moved = (now, telemetry.pulled_m);
             } else if now > moved.0 + still {
                 let telemetry = Box::new(*telemetry);
                 return Err(OperatorError::TimedOut(asked, still, telemetry));
@@ -172,6 +192,12 @@ impl Operator {
         }
         self.drive(|operator| operator.command(Command::Clear))
     }
+}
+
+/// Whether a motor has gone on.
+fn travelled(before_m: &[f32; 3], now_m: &[f32; 3]) -> bool {
+    let mut pairs = before_m.iter().zip(now_m);
+    pairs.any(|(before, now)| (now - before).abs() > STILL_M)
 }
 
 /// The number of what was sent; none where the line took no frame in time: a bus on which nobody acknowledges takes the next one when its board has

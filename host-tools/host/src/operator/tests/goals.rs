@@ -8,6 +8,8 @@ use leg_firmware::host_link::HostRefusal;
 use leg_firmware::supervisor::{Fault, State};
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::InitialState;
+use std::cell::Cell;
+use std::rc::Rc;
 use std::time::Duration;
 
 #[test]
@@ -171,6 +173,33 @@ fn a_disarm_that_is_ended_on_its_way_says_by_what() {
             .fold(0.0, f32::max);
         assert!(highest_n > 20.0, "{highest_n} N");
     }
+}
+
+/// A leg that is stopped on its way brakes: what is told of it is where it rests.
+#[test]
+fn a_stop_that_waits_tells_where_the_leg_rests() {
+    let leg = hanging_leg();
+    let mut operator = host(&leg, 1);
+    let mut other = host(&leg, 2);
+    let told = Rc::new(Cell::new(None));
+    let tell = told.clone();
+    operator.set_watcher(move |now| {
+        if now.pose[1] > 0.15 && tell.get().is_none() {
+            tell.set(Some(other.stop_to_rest().unwrap().pose));
+        }
+    });
+    error_of!(
+        operator.reach(&lean(28.0)),
+        OperatorError::StoppedByOtherHost(..)
+    );
+    let [x, y] = told.get().unwrap();
+    operator.pause(Duration::from_secs(1)).unwrap();
+    let rest = telemetry(&mut operator).pose;
+    assert!(rest[1] > 0.05 && rest[1] < 0.4, "{rest:?}");
+    assert!(
+        (rest[0] - x).abs() < 1e-3 && (rest[1] - y).abs() < 1e-3,
+        "{rest:?}"
+    );
 }
 
 #[test]
