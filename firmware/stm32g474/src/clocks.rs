@@ -1,6 +1,5 @@
 //! 170 MHz from the board's 24 MHz crystal.
 
-use crate::fatal;
 use embassy_stm32::pac::flash::vals::Latency;
 use embassy_stm32::pac::timer::vals::Urs;
 use embassy_stm32::rcc::mux::{Adcsel, Fdcansel, Uartsel};
@@ -9,7 +8,6 @@ use embassy_stm32::rcc::{
 };
 use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, Peripherals, pac, rcc};
-use leg_firmware::board::ShortText;
 use leg_firmware::board::timing::{CLOCK_HZ, TASK_TIMER_HZ};
 
 /// PWR_CR5.R1MODE, set for the normal voltage of range 1, clear for the boosted one: bit 8 by RM0440 and by ST's own
@@ -39,16 +37,19 @@ const _: () = assert!(embassy_time::TICK_HZ == TASK_TIMER_HZ as u64);
 /// Starts the chip at 170 MHz.
 ///
 /// `init` resets PWR, and so its boost: it leaves the chip at 16 MHz. Above 150 MHz the voltage has to be boosted before.
-pub fn start() -> Peripherals {
+/// None where the crystal does not start.
+pub fn start() -> Option<Peripherals> {
     let mut config = Config::default();
     config.rcc.ls = LsConfig::off();
     let mut peripherals = embassy_stm32::init(config);
     reset_backup_domain();
-    start_crystal();
+    if !start_crystal() {
+        return None;
+    }
     pac::PWR.cr5().modify(|w| w.0 &= !R1MODE);
     rcc::reinit(half_speed(), &mut peripherals.RCC);
     double_speed();
-    peripherals
+    Some(peripherals)
 }
 
 /// Nothing of the backup domain is used, and a short dip of the supply may leave anything in it: by ST's errata of this family an RTC that runs from LSI
@@ -59,16 +60,16 @@ fn reset_backup_domain() {
     pac::RCC.bdcr().modify(|w| w.set_bdrst(false));
 }
 
-/// embassy waits for the crystal without an end, and no watchdog runs yet.
-fn start_crystal() {
+/// Whether the crystal starts: embassy waits for it without an end, and no watchdog runs yet.
+fn start_crystal() -> bool {
     pac::RCC.cr().modify(|w| w.set_hseon(true));
     for _ in 0..CRYSTAL_STEPS {
         if pac::RCC.cr().read().hserdy() {
-            return;
+            return true;
         }
         cortex_m::asm::delay(CRYSTAL_STEP_CYCLES);
     }
-    fatal::end(&ShortText::new("the crystal does not start"));
+    false
 }
 
 /// 24 MHz / 6 × 85 / 2 = 170 MHz for the converters and the serial line, and half of it for processor and buses.
@@ -122,7 +123,7 @@ pub fn watch() {
 }
 
 /// Whether the chip runs from the oscillator with which it starts.
-pub fn at_start() -> bool {
+pub fn has_start_clock() -> bool {
     pac::RCC.cfgr().read().sws() == Sysclk::HSI
 }
 

@@ -98,7 +98,7 @@ pub fn end(text: &ShortText) -> ! {
 
 /// Waits, and keeps the watchdogs quiet if they run already.
 fn rest() {
-    let rounds = if clocks::at_start() {
+    let rounds = if clocks::has_start_clock() {
         REST_STEP_ROUNDS_AT_START
     } else {
         REST_STEP_ROUNDS

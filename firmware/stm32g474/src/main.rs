@@ -49,6 +49,7 @@ mod watchdog;
 
 use defmt_rtt as _;
 use embassy_executor::Spawner;
+use leg_firmware::board::ShortText;
 
 defmt::timestamp!("{=u64:us}", embassy_time::Instant::now().as_micros());
 
@@ -57,7 +58,9 @@ async fn main(spawner: Spawner) {
     hot::load();
     let origin = fatal::origin();
     priorities::set();
-    let peripherals = clocks::start();
+    let Some(peripherals) = clocks::start() else {
+        fatal::end(&ShortText::new("the crystal does not start"));
+    };
     memory_guard::set();
     clocks::watch();
     supply_watch::start();

@@ -165,7 +165,7 @@ impl FirmwareImage {
     }
 }
 
-/// What a program that is run to its end writes; none, and it is killed, where that is not waited for.
+/// What a program that is run to its end writes; none, and it is killed, where that is not waited for. What it has started itself goes on to its end.
 fn output_of(command: &mut Command, cancelled: &dyn Fn() -> bool) -> io::Result<Option<Output>> {
     command.stdin(Stdio::null());
     let mut child = command
@@ -187,6 +187,10 @@ fn output_of(command: &mut Command, cancelled: &dyn Fn() -> bool) -> io::Result<
         }
         thread::sleep(LOOK_TIME);
     };
+    // Ctrl-C in a terminal ends the program, too.
+    if !status.success() && cancelled() {
+        return Ok(None);
+    }
     let written = |reader: Option<JoinHandle<Vec<u8>>>| {
         let read = reader.and_then(|reader| reader.join().ok());
         read.unwrap_or_default()
@@ -206,4 +210,48 @@ fn read_beside(mut pipe: impl Read + Send + 'static) -> JoinHandle<Vec<u8>> {
         let _ = pipe.read_to_end(&mut bytes);
         bytes
     })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::output_of;
+    use std::cell::Cell;
+    use std::process::Command;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn a_program_that_nobody_waits_for_is_ended() {
+        let begun = Instant::now();
+        let ended = output_of(Command::new("sleep").arg("60"), &|| true).unwrap();
+        assert!(ended.is_none() && begun.elapsed() < Duration::from_secs(30));
+    }
+
+    /// As by Ctrl-C in a terminal, which all that runs there gets.
+    #[test]
+    fn a_program_that_is_ended_with_who_waits_has_not_failed() {
+        let looks = Cell::new(0);
+        let cancelled = || {
+            looks.set(looks.get() + 1);
+            looks.get() > 1
+        };
+        let mut ended = Command::new("sh");
+        let ended = output_of(ended.args(["-c", "kill -INT $$"]), &cancelled).unwrap();
+        assert!(ended.is_none() || looks.get() < 2);
+        let failed = output_of(&mut Command::new("false"), &|| false)
+            .unwrap()
+            .unwrap();
+        assert!(!failed.status.success());
+    }
+
+    #[test]
+    fn what_a_program_writes_is_kept() {
+        let many = "i=0; while [ $i -lt 20000 ]; do echo $i; echo $i >&2; i=$((i+1)); done";
+        let output = output_of(Command::new("sh").args(["-c", many]), &|| false).unwrap();
+        let output = output.unwrap();
+        assert!(output.status.success());
+        for written in [output.stdout, output.stderr] {
+            assert_eq!(String::from_utf8(written).unwrap().lines().count(), 20_000);
+        }
+    }
 }

@@ -8,7 +8,7 @@ use leg_base::timed_path::{PathBuilder, PathRow, TimedPoint};
 use leg_firmware::set_point::StreamTension;
 use serde::Deserialize;
 use std::collections::VecDeque;
-use std::io::BufRead;
+use std::io::{BufRead, ErrorKind};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use std::thread;
 
@@ -107,7 +107,11 @@ impl<R: BufRead> PathReader<R> {
         loop {
             let line = next_line(&mut self.input).map_err(|error| {
                 let sentence = format!("cannot read {}: {error}", self.name);
-                Failure::refused(sentence, "give a file that may be read")
+                let help = match error.kind() {
+                    ErrorKind::InvalidData => "give a point in each line",
+                    _ => "give a file that may be read",
+                };
+                Failure::refused(sentence, help)
             })?;
             self.line += 1;
             let line = match line {

@@ -133,15 +133,21 @@ fn disturbances(read: bool, options: Options) -> Receiver<Action> {
 fn read_disturbances(sender: &Sender<Action>, options: Options) {
     let mut input = std::io::stdin().lock();
     let mut number = 0_u64;
-    while let Ok(Some(line)) = text_input::next_line(&mut input) {
+    loop {
         number += 1;
-        let (line, action) = match line {
-            Line::Whole(bytes) => {
+        let (line, action) = match text_input::next_line(&mut input) {
+            Ok(None) => return,
+            // Nothing that comes after it is read.
+            Err(error) => {
+                note(&refusal(number, &error.to_string(), options));
+                return;
+            }
+            Ok(Some(Line::Whole(bytes))) => {
                 let line = String::from_utf8_lossy(&bytes).into_owned();
                 let action = Action::parse(&line);
                 (line, action)
             }
-            Line::TooLong => ("a disturbance".into(), Err(text_input::too_long())),
+            Ok(Some(Line::TooLong)) => ("a disturbance".into(), Err(text_input::too_long())),
         };
         match action {
             Ok(disturbance) => {

@@ -71,7 +71,7 @@ pub const POSITION_GAIN_MAX_PER_S: f32 = 120.0;
 
 impl Servo {
     /// The most that the highest current accelerates the tendon by, m/s², as far as the gains tell it: that of the speed loop follows from the rotor's inertia.
-    /// Where the position loop was made softer it is more than that, and where the speed loop was made stiffer less.
+    /// A speed loop that was made softer makes it seem more, and one that was made stiffer less.
     #[must_use]
     pub fn acceleration_m_per_s2(&self) -> f32 {
         let position_gain_per_s = self.position_gain_per_s.max(POSITION_GAIN_MAX_PER_S);

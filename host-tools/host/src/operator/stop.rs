@@ -46,7 +46,7 @@ impl Operator {
         stopped.map(|report| report.telemetry)
     }
 
-    /// The same, and waits until its motors stand: a stop brakes them for a moment. Of a leg that ramps down they do not.
+    /// The same, and waits until its motors stand, as a stop brakes them for a moment: not where the leg ramps down, nor where it does not answer any more.
     ///
     /// # Errors
     /// As [`Self::stop`].
@@ -54,8 +54,14 @@ impl Operator {
         let mut now = self.stop()?;
         self.uncancelled(|operator| {
             for _ in 0..REST_LOOKS {
+                if now.state == State::RampingDown {
+                    break;
+                }
                 operator.pause(REST_TIME)?;
-                let before = std::mem::replace(&mut now, operator.telemetry()?.telemetry);
+                let Ok(report) = operator.telemetry() else {
+                    break;
+                };
+                let before = std::mem::replace(&mut now, report.telemetry);
                 if !travelled(&before.pulled_m, &now.pulled_m) {
                     break;
                 }

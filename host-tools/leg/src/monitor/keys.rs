@@ -52,14 +52,14 @@ impl Keys {
 fn ends(typed: &[u8]) -> bool {
     match typed {
         [] => false,
-        [ESCAPE] | [CTRL_C | b'q' | b'Q', ..] => true,
-        [ESCAPE, rest @ ..] => ends(behind_sequence(rest)),
+        [ESCAPE] | [ESCAPE, ESCAPE | CTRL_C, ..] | [CTRL_C | b'q' | b'Q', ..] => true,
+        [ESCAPE, rest @ ..] => ends(skip_sequence(rest)),
         [_, rest @ ..] => ends(rest),
     }
 }
 
 /// What comes behind an arrow, say, whose escape was read: a letter, or ECMA-48's `[` or `O`, parameters and a final byte.
-fn behind_sequence(typed: &[u8]) -> &[u8] {
+fn skip_sequence(typed: &[u8]) -> &[u8] {
     let introduced = typed.strip_prefix(b"[").or(typed.strip_prefix(b"O"));
     let rest = introduced.unwrap_or(typed);
     let last = rest.iter().position(|byte| (0x40..=0x7e).contains(byte));
@@ -81,6 +81,8 @@ mod tests {
             ("x", false),
             ("Q", true),
             ("\x1b[Aq", true),
+            ("\x1b\x03", true),
+            ("\x1b\x1b", true),
             ("\x1b[1;5A\x1b[Bx", false),
             ("\x1b[1;5Aq", true),
             ("\x1b[A", false),

@@ -67,7 +67,8 @@ impl<'a> Sequencer<'a> {
             self.arrived_s = None;
         }
         // What became of a command in the last step.
-        Ok(stand.awaits_answer().then_some(self.steps.len()))
+        let awaits = stand.summary.ticks > 0 && stand.awaits_answer();
+        Ok(awaits.then_some(self.steps.len()))
     }
 
     /// Whether a step is done.

@@ -35,7 +35,7 @@ impl BitTiming {
     }
 
     /// From there to its end, ns.
-    fn after_sample_ns(self) -> u32 {
+    fn rest_ns(self) -> u32 {
         1_000_000_000_u32
             .checked_div(self.hz)
             .unwrap_or_default()
@@ -135,8 +135,8 @@ impl Fdcan {
         };
         let (others_nominal, others_data) = (others(nominal), others(data));
         let (own_end_ns, others_end_ns) = (
-            nominal.sample_ns() + data.after_sample_ns(),
-            others_nominal.sample_ns() + others_data.after_sample_ns(),
+            nominal.sample_ns() + data.rest_ns(),
+            others_nominal.sample_ns() + others_data.rest_ns(),
         );
         let [own_ns, others_ns] = [nominal, others_nominal].map(BitTiming::sample_ns);
         check("it samples", "others change", own_ns, others_end_ns);

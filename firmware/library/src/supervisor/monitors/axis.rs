@@ -33,6 +33,9 @@ const STEP_PART: f32 = 0.9;
 /// (`tests/suite/rig/other_motors.rs`).
 const ACCELERATED_MULTIPLE: f32 = 2.5;
 
+/// The most of that, as a part of `following_m`: the gains tell the acceleration of a servo that was made soft as much greater than it is.
+const ACCELERATED_MAX: f32 = 0.1;
+
 /// The same in counts where these are coarse: a motor that starts counts one at once.
 const STEP_COUNTS: f32 = 1.5;
 
@@ -118,6 +121,9 @@ impl<T: Scalar> AxisMonitor<T> {
         let limits = &settings.limits;
         let f_max_n = settings.f_max_n;
         let hard_v = limits.driven_part * servo.current_a * servo.resistance_ohm;
+        let accelerated_m =
+            ACCELERATED_MULTIPLE * servo.acceleration_m_per_s2() * CYCLE_S * CYCLE_S;
+        let accelerated_m = accelerated_m.min(ACCELERATED_MAX * limits.following_m);
         // What the maximum tension asks of a warm winding holds a motor, and need not turn it. One that is jammed gets nearly all that
         // the servo and the supply give.
         let holding_a = (servo.friction_a + servo.pull_a_per_n * f_max_n) * WARM_RATIO;
@@ -151,12 +157,7 @@ impl<T: Scalar> AxisMonitor<T> {
                 jump_n: limits.jump_n.into(),
                 step_m: T::from(
                     (STEP_PART * servo.speed_m_per_s * TICK_S)
-                        .max(
-                            ACCELERATED_MULTIPLE
-                                * servo.acceleration_m_per_s2()
-                                * CYCLE_S
-                                * CYCLE_S,
-                        )
+                        .max(accelerated_m)
                         .max(STEP_COUNTS * m_per_count.abs()),
                 ),
                 following_m: limits.following_m.into(),

@@ -94,7 +94,7 @@ rules! {
         |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
     Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
         |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains));
-    Least homing.f_max_n = "f_max_n, at most 15" exact,
+    Least homing.f_max_n = "tendon.f_max_n, at most 15" exact,
         |basis, _| basis.f_max_n.min(15.0);
     Least motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
         |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
