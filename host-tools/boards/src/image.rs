@@ -218,6 +218,7 @@ mod tests {
     use super::output_of;
     use std::cell::Cell;
     use std::process::Command;
+    use std::thread;
     use std::time::{Duration, Instant};
 
     #[test]
@@ -230,14 +231,19 @@ mod tests {
     /// As by Ctrl-C in a terminal, which all that runs there gets.
     #[test]
     fn a_program_that_is_ended_with_who_waits_has_not_failed() {
+        // It ends between the first look, in which nobody has asked for it yet, and the second.
         let looks = Cell::new(0);
         let cancelled = || {
-            looks.set(looks.get() + 1);
-            looks.get() > 1
+            if looks.replace(looks.get() + 1) == 0 {
+                thread::sleep(Duration::from_secs(3));
+                return false;
+            }
+            true
         };
         let mut ended = Command::new("sh");
-        let ended = output_of(ended.args(["-c", "kill -INT $$"]), &cancelled).unwrap();
-        assert!(ended.is_none() || looks.get() < 2);
+        let ended = output_of(ended.args(["-c", "sleep 1; kill -INT $$"]), &cancelled).unwrap();
+        assert!(ended.is_none());
+        assert_eq!(looks.get(), 2);
         let failed = output_of(&mut Command::new("false"), &|| false)
             .unwrap()
             .unwrap();
