@@ -17,9 +17,12 @@ mod settings;
 mod tree;
 mod update;
 
+use leg_boards::image::workspace_root;
+use std::fs;
 use std::path::Path;
 
 /// A mistake.
+#[derive(Clone, Copy)]
 struct Mistake {
     /// The file, from the root of the workspace.
     file: &'static str,
@@ -50,6 +53,11 @@ impl Mistake {
         }
     }
 
+    /// How often a file has the piece that is replaced.
+    fn count_in(&self, text: &str) -> usize {
+        text.matches(self.right).count()
+    }
+
     fn has_to_be_found(&self, name: &str) {
         let image = tree::image_with(self, name);
         let report = (self.run)(&image);
@@ -62,17 +70,45 @@ impl Mistake {
     }
 }
 
-/// A test for each mistake.
+/// A test for each mistake, and the list of them.
 macro_rules! mistakes {
-    ($($name:ident: $mistake:expr;)*) => {$(
-        #[test]
-        #[ignore = "builds an image: run with --ignored"]
-        fn $name() {
-            $mistake.has_to_be_found(stringify!($name));
-        }
-    )*};
+    ($($name:ident: $mistake:expr;)*) => {
+        pub const ALL: &[(&str, Mistake)] = &[$((stringify!($name), $mistake)),*];
+        $(
+            #[test]
+            #[ignore = "builds an image: run with --ignored"]
+            fn $name() {
+                $mistake.has_to_be_found(stringify!($name));
+            }
+        )*
+    };
 }
 use mistakes;
+
+/// A change of the firmware that moves one is found at once, and not by the campaign.
+#[test]
+fn each_mistake_has_its_place() {
+    let all = [
+        clocks::ALL,
+        guards::ALL,
+        hangs::ALL,
+        links::ALL,
+        power::ALL,
+        program::ALL,
+        sensing::ALL,
+        settings::ALL,
+        update::ALL,
+    ];
+    let mut without_place = Vec::new();
+    for (name, mistake) in all.concat() {
+        let text = fs::read_to_string(workspace_root().join(mistake.file)).unwrap();
+        let count = mistake.count_in(&text);
+        if count != 1 {
+            without_place.push(format!("{name}: {count} times in {}", mistake.file));
+        }
+    }
+    assert_eq!(without_place, [""; 0]);
+}
 
 /// Without a mistake nothing is reported.
 #[test]

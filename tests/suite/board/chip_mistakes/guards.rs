@@ -79,8 +79,14 @@ mistakes! {
     );
     ccm_protected_before_its_clock_is_on: Mistake::new(
         MAIN,
-        "    let peripherals = clocks::start();\n    memory_guard::set();\n",
-        "    memory_guard::set();\n    let peripherals = clocks::start();\n",
+        "    let Some(peripherals) = clocks::start() else {
+        fatal::end(&ShortText::new(\"the crystal does not start\"));
+    };
+    memory_guard::set();\n",
+        "    memory_guard::set();
+    let Some(peripherals) = clocks::start() else {
+        fatal::end(&ShortText::new(\"the crystal does not start\"));
+    };\n",
         moving,
         "SYSCFG is accessed while its clock is off",
     );

@@ -51,7 +51,7 @@ pub fn image_with(mistake: &Mistake, name: &str) -> PathBuf {
     }
     let path = directory.join(mistake.file);
     let text = fs::read_to_string(&path).unwrap();
-    let count = text.matches(mistake.right).count();
+    let count = mistake.count_in(&text);
     assert_eq!(
         count, 1,
         "{name}: {} has `{}` {count} times: mend the mistake",
