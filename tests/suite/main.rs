@@ -84,6 +84,7 @@ mod sim {
     mod ring_down;
     mod scenario_bits;
     mod scenarios;
+    mod short_scenarios;
     mod station;
     mod station_defects;
     mod station_rigs;

@@ -29,7 +29,7 @@ mod tendon_damping;
 mod trajectory;
 mod unloaded;
 
-pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
+pub use axis::{Axis, AxisGoal, AxisInput, AxisView, LIMITED_AHEAD_M};
 pub use damping::{MOVING_SWINGING_M, SWINGING_M, SwingDamping};
 pub use debounce::Debounce;
 pub use estimate::{Estimate, Estimator, LengthError};

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 /// Highest code of an analogue input: the sum of 16 conversions of 12 bits, as the converter's oversampling gives it.
 pub const CODE_MAX: u16 = 16 * 4095;
 
+/// Codes of a load cell this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
+pub const SATURATED_CODES: u16 = 64;
+
 /// Ticks of the control law in a second.
 pub const TICK_HZ: u16 = 8_000;
 

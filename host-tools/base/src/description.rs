@@ -1,6 +1,6 @@
 //! States, reactions and faults as text.
 
-use leg_firmware::supervisor::{FaultSet, Reaction, State};
+use leg_firmware::supervisor::{Fault, FaultSet, Reaction, State};
 
 /// A state.
 #[must_use]
@@ -59,7 +59,24 @@ pub fn remedies(faults: FaultSet) -> String {
     joined(faults, |fault| fault.entry().remedy.into())
 }
 
-fn joined(faults: FaultSet, text: fn(leg_firmware::supervisor::Fault) -> String) -> String {
+/// The words of a remedy by which it says itself that the fault is cleared.
+const CLEARED: &str = "clear the fault";
+
+/// What to do about each, and that they are cleared then; `clear` is the name of the command where it is read.
+#[must_use]
+pub fn remedies_and_clear(faults: FaultSet, clear: &str) -> String {
+    let named = format!("{CLEARED} ({clear})");
+    let remedies = joined(faults, |fault| {
+        fault.entry().remedy.replacen(CLEARED, &named, 1)
+    });
+    let mut all = faults.faults();
+    if all.all(|fault| fault.entry().remedy.contains(CLEARED)) {
+        return remedies;
+    }
+    format!("{remedies}; then {clear}")
+}
+
+fn joined(faults: FaultSet, text: impl Fn(Fault) -> String) -> String {
     let texts: Vec<_> = faults.faults().map(text).collect();
     texts.join("; ")
 }
@@ -68,4 +85,29 @@ fn joined(faults: FaultSet, text: fn(leg_firmware::supervisor::Fault) -> String)
 #[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::remedies_and_clear;
+    use leg_firmware::supervisor::{Fault, FaultSet};
+
+    /// Each is cleared once, and after all causes are removed.
+    #[test]
+    fn a_clear_follows_the_remedies_and_is_named() {
+        let words = |faults: &[Fault]| {
+            let all = faults.iter().copied().map(FaultSet::single);
+            remedies_and_clear(all.fold(FaultSet::NONE, FaultSet::union), "`leg clear`")
+        };
+        let driver = words(&[Fault::DriverFault]);
+        assert!(driver.ends_with("; then `leg clear`"), "{driver}");
+        let reversed = words(&[Fault::EncoderReversed]);
+        assert!(
+            reversed.ends_with("then clear the fault (`leg clear`) and home"),
+            "{reversed}"
+        );
+        let both = words(&[Fault::DriverFault, Fault::EncoderReversed]);
+        assert!(both.ends_with("; then `leg clear`"), "{both}");
+        assert!(both.contains(&driver.replace("; then `leg clear`", "")));
+    }
 }

@@ -62,7 +62,7 @@ pub fn next_line(input: &mut (impl BufRead + ?Sized)) -> io::Result<Option<Line>
     } else if line.len() > LINE_BYTES_MAX {
         let skipped = input.take(SKIPPED_BYTES_MAX).skip_until(b'\n')?;
         if skipped as u64 == SKIPPED_BYTES_MAX {
-            let sentence = format!("a line is longer than {} MiB", SKIPPED_BYTES_MAX >> 20);
+            let sentence = format!("it is longer than {} MiB", SKIPPED_BYTES_MAX >> 20);
             return Err(io::Error::new(ErrorKind::InvalidData, sentence));
         }
     }
@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn a_line_without_an_end_is_an_error() {
         let error = next_line(&mut BufReader::new(std::io::repeat(0))).unwrap_err();
-        assert_eq!(error.to_string(), "a line is longer than 64 MiB");
+        assert_eq!(error.to_string(), "it is longer than 64 MiB");
     }
 
     #[test]

@@ -97,26 +97,14 @@ impl FirmwareImage {
     /// # Errors
     /// [`ImageError`] with what cargo wrote.
     pub fn build(self) -> Result<PathBuf, ImageError> {
-        self.build_in(&workspace_root())
+        self.build_in(&workspace_root(), &|| false)
     }
 
-    /// The same, until `cancelled` says that nobody waits for it any more.
+    /// The same from a copy of the workspace, and until `cancelled` says that nobody waits for it any more.
     ///
     /// # Errors
     /// As [`Self::build`]; [`ImageError::Cancelled`].
-    pub fn build_unless(self, cancelled: &dyn Fn() -> bool) -> Result<PathBuf, ImageError> {
-        self.build_watched(&workspace_root(), cancelled)
-    }
-
-    /// The same from a copy of the workspace.
-    ///
-    /// # Errors
-    /// [`ImageError`] with what cargo wrote.
-    pub fn build_in(self, root: &Path) -> Result<PathBuf, ImageError> {
-        self.build_watched(root, &|| false)
-    }
-
-    fn build_watched(
+    pub fn build_in(
         self,
         root: &Path,
         cancelled: &dyn Fn() -> bool,

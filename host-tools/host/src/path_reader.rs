@@ -106,12 +106,17 @@ impl<R: BufRead> PathReader<R> {
     fn next_record(&mut self) -> Result<Option<StringRecord>, Failure> {
         loop {
             let line = next_line(&mut self.input).map_err(|error| {
-                let sentence = format!("cannot read {}: {error}", self.name);
-                let help = match error.kind() {
-                    ErrorKind::InvalidData => "give a point in each line",
-                    _ => "give a file that may be read",
-                };
-                Failure::refused(sentence, help)
+                let (name, number) = (&self.name, self.line + 1);
+                match error.kind() {
+                    ErrorKind::InvalidData => Failure::refused(
+                        format!("cannot read line {number} of {name}: {error}"),
+                        "give a point in each line, ended by a newline",
+                    ),
+                    _ => Failure::refused(
+                        format!("cannot read {name}: {error}"),
+                        "give a file that may be read",
+                    ),
+                }
             })?;
             self.line += 1;
             let line = match line {

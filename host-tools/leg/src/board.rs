@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_boards::chip::ChipSession;
-use leg_boards::image::{FirmwareImage, ImageError};
+use leg_boards::image::{FirmwareImage, ImageError, workspace_root};
 use leg_boards::qemu::{QemuClock, QemuConfig, QemuSession};
 use leg_boards::setup;
 use leg_host::cancel_flag::CancelFlag;
@@ -101,11 +101,11 @@ pub(crate) fn build_image(image: FirmwareImage) -> Result<PathBuf, Failure> {
     let message = format!("building {}", image.binary());
     let spinner = ProgressBar::new_spinner().with_message(message);
     spinner.enable_steady_tick(Duration::from_millis(100));
-    let built = image.build_unless(&CancelFlag::ctrl_c_pressed);
+    let built = image.build_in(&workspace_root(), &CancelFlag::ctrl_c_pressed);
     spinner.finish_and_clear();
     built.map_err(|error| match error {
         ImageError::Cancelled => Failure::failed(
-            "ended by Ctrl-C as the firmware was built",
+            "ended by Ctrl-C while the firmware was being built",
             "nothing was begun: command again",
         ),
         error => Failure::from_error(error),

@@ -10,7 +10,7 @@ use leg_base::text_input::{self, Line};
 use leg_model_tools::jsonl;
 use leg_model_tools::line_error::LineError;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// Evaluates the model at poses given as JSON Lines.
@@ -60,9 +60,9 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
     let mut evaluator = Evaluator::start(args.on, options)?;
     let (mut answered, mut failed) = (0, 0);
-    for number in 1.. {
+    for number in 1_usize.. {
         let line = text_input::next_line(&mut input);
-        let Some(line) = line.map_err(|error| unreadable(&args.file, &error))? else {
+        let Some(line) = line.map_err(|error| unreadable_line(&args.file, number, &error))? else {
             break;
         };
         let answer = match &line {
@@ -123,6 +123,16 @@ fn name(file: &Path) -> String {
     } else {
         file.display().to_string()
     }
+}
+
+fn unreadable_line(file: &Path, number: usize, error: &io::Error) -> Failure {
+    if error.kind() != ErrorKind::InvalidData {
+        return unreadable(file, error);
+    }
+    Failure::refused(
+        format!("cannot read line {number} of {}: {error}", name(file)),
+        "give a pose in each line, ended by a newline",
+    )
 }
 
 fn unreadable(file: &Path, error: &io::Error) -> Failure {

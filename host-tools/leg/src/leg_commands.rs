@@ -49,7 +49,7 @@ pub(crate) enum LegCommand {
     /// Stops the leg, for any host, and leaves it in hold.
     ///
     /// A leg that is disarmed or off stays so, one that jogs is disarmed; a leg that ramps down goes on paying its tendons out until it is
-    /// disarmed: there only the emergency stop ends that.
+    /// disarmed: only the emergency stop ends this.
     ///
     /// The stop is repeated until the leg acknowledges it, and works beside another command that drives the leg, on CAN too.
     Stop(LegArgs),

@@ -11,6 +11,7 @@ use leg_host::recording::{self, About};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::{RigFile, RigText};
 use std::error::Error;
+use std::ffi::OsStr;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -137,9 +138,12 @@ pub(crate) fn print_failure(failure: &Failure, json: bool) {
 
 /// Whether standard error is a terminal that shows colours, and whose user has not declined them (`NO_COLOR`).
 fn shows_colours() -> bool {
-    let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-    io::stderr().is_terminal() && !declined && !dumb
+    let variable = |name| std::env::var_os(name).unwrap_or_default();
+    io::stderr().is_terminal() && wishes_colours(&variable("NO_COLOR"), &variable("TERM"))
+}
+
+fn wishes_colours(no_color: &OsStr, term: &OsStr) -> bool {
+    no_color.is_empty() && term != "dumb"
 }
 
 /// Prints what clap says of the arguments: help on standard output, an error on standard error.
@@ -198,8 +202,26 @@ pub(crate) fn about_now(title: &str) -> About {
 
 #[cfg(test)]
 mod tests {
-    use super::failure_line;
+    use super::{failure_line, wishes_colours};
     use leg_base::failure::{Failure, TextPlace};
+    use std::ffi::OsStr;
+
+    #[test]
+    fn colours_are_declined_by_name() {
+        for (no_color, term, wishes) in [
+            ("", "xterm", true),
+            ("", "", true),
+            ("1", "xterm", false),
+            ("", "dumb", false),
+        ] {
+            let [no_color, term] = [no_color, term].map(OsStr::new);
+            assert_eq!(
+                wishes_colours(no_color, term),
+                wishes,
+                "{no_color:?} {term:?}"
+            );
+        }
+    }
 
     #[test]
     fn an_error_for_machines_has_its_place_and_exit_code() {

@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     bridge::run(transport.as_mut(), &pages, hello, host, &cancel).map_err(|error| {
         Failure::failed(
             format!("the connection to {name} is lost: {error}"),
-            format!("look at the cable, and start it again; {WITHOUT_HOST}"),
+            format!("check the cable, then start `leg ui` again; {WITHOUT_HOST}"),
         )
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::operator_thread::LegFailure;
 use crate::session::SessionError;
-use leg_base::description;
+use leg_base::description::{self, remedies_and_clear};
 use leg_base::failure::Failure;
 use leg_base::refusal;
 use leg_firmware::command::CommandRefusal;
@@ -202,7 +202,7 @@ fn faulted(faults: FaultSet, state: Option<State>) -> PyErr {
     let entry = fault.entry();
     let remedy = match entry.clears {
         Clearing::CauseGone => entry.remedy.into(),
-        Clearing::Command => format!("{}; then clear()", entry.remedy),
+        Clearing::Command => remedies_and_clear(FaultSet::single(fault), "clear()"),
     };
     LegFault::new_err((
         fault.code(),

@@ -68,6 +68,17 @@ def test_rows_are_those_of_single_runs_in_the_order_of_the_cases(tmp_path):
     assert len({row["bits"] for row in rows}) == 12
 
 
+def test_commands_that_the_leg_refused_are_told(tmp_path):
+    text = 'title = "Armed by nobody"\nsteps = [{ await = { state = "disarmed", timeout_s = 1 } }, "keep_station"]\n'
+    single = run_scenario(text)
+    (told,) = single["refused"]
+    assert told.startswith("keep_station (") and ": " in told
+    (row,) = campaign([{"scenario": text}], tmp_path)
+    assert row["refused"] == told
+    (without,) = campaign([{"scenario": "hold"}], tmp_path)
+    assert not without["refused"] and run_scenario("hold")["refused"] == []
+
+
 def test_a_failure_keeps_what_repeats_it(tmp_path):
     strict = {"scenario": lean(40, bound_mm=1e-9), "rig": heavier(), "seed": 11}
     broken = {"scenario": "title = 3\n"}

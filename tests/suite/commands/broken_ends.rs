@@ -138,6 +138,16 @@ fn an_input_without_an_end_is_refused_at_once() {
             "it is larger than 1 MiB",
         ),
         (&["curve", "/dev/zero"], 2, "it is larger than 32 MiB"),
+        (
+            &["eval", "/dev/zero"],
+            2,
+            "cannot read line 1 of /dev/zero: it is longer than 64 MiB",
+        ),
+        (
+            &["follow", "--on", "sim", "/dev/zero"],
+            2,
+            "cannot read line 1 of /dev/zero: it is longer than 64 MiB",
+        ),
         (&["replay", "/dev/zero"], 2, "is no whole MCAP file"),
     ] {
         let output = leg(memory, directory.path(), arguments);

@@ -259,7 +259,7 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
             "asks the tendons for more",
         ),
         (
-            "[control.servo]\nspeed_m_per_s = 1e-4\n",
+            "[control.limits]\nramp_m_per_s = 2e-4\ntaut_time_s = 60\n[control.servo]\nspeed_m_per_s = 2e-4\n",
             "no slower turn than 0.01 may be given: let the tendons have at least 2.7e-4",
         ),
         (

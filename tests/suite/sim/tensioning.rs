@@ -126,6 +126,25 @@ fn cells_that_are_off_alike_are_taken_for_tendons() {
     );
 }
 
+/// A payload that hangs on the leg as it homes pulls as the leg does, and is taken for tendons that stretch more.
+#[test]
+fn a_payload_at_homing_is_taken_for_softer_tendons() {
+    for (name, rig) in rigs() {
+        let start = Start::Slack { slack_mm: SLACK_MM };
+        let mut stand = Stand::new(&rig, &rig.plant, start, 1).unwrap();
+        stand.plant().set_payload(2.0, 0.0);
+        stand.wait(0.2).unwrap();
+        home(&mut stand);
+        stand.wait(TENSIONED_S).unwrap();
+        let factor = elongation_factor(&stand);
+        println!(
+            "{name}: {factor:.4}, {:?} {:?}",
+            stand.state(),
+            stand.faults()
+        );
+    }
+}
+
 /// What was measured stays over a disarm and the next homing.
 #[test]
 fn what_was_measured_stays_until_other_settings_come() {

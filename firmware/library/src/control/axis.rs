@@ -16,7 +16,7 @@ const RESTING_DECAY: f32 = 0.99;
 const STANDING_M_PER_S: f32 = 5e-4;
 
 /// How far a motor that the maximum tension slows down may be behind its reference, m: a sixth of what would be a fault.
-const LIMITED_AHEAD_M: f32 = 1e-4;
+pub const LIMITED_AHEAD_M: f32 = 1e-4;
 
 /// Where a motor shall be led.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -91,7 +91,7 @@ fields! {
         /// Time in which the pretension is trimmed by the tensions.
         trim_time_s ["s"]: 1e-3..=100.0 = 0.5;
         /// Most that the pretension is trimmed.
-        trim_max_n ["N"]: 0.0..=1e3 = 20.0;
+        trim_max_n ["N"]: 0.1..=1e3 = 20.0;
     }
 }
 

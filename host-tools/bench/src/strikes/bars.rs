@@ -53,8 +53,8 @@ const RUNAWAY_AGAIN_BEYOND: f64 = 1.8;
 const SLIP_BEYOND: f64 = 3.0;
 
 /// The same where a moving leg brakes that leaves its load out: its tensions do not take the load from its path, and it swings about where
-/// it comes to rest. 165.0 N, of 135.5 N without the stop, were found by an earlier law (`--seed
-/// 271128`, #10784, 162.6 N now).
+/// it comes to rest. 165.0 N, of 135.5 N without the stop, were found by an earlier law
+/// (`--seed 271128`, #10784, 162.6 N now).
 const LEFT_OUT_BEYOND: f64 = 0.15;
 
 /// The same where a cell shows the maximum tension, so that its motor gives way by it until another tendon is slack, and the leg swings: 164.2 N

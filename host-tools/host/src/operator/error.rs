@@ -1,7 +1,9 @@
 //! Why an operator did not get what it asked for.
 
 use crate::leg_report::pose_words;
-use leg_base::description::{WITHOUT_HOST, causes, faults, hex, remedies, state};
+use leg_base::description::{
+    WITHOUT_HOST, causes, faults, hex, remedies, remedies_and_clear, state,
+};
 use leg_base::failure::Failure;
 use leg_base::refusal;
 use leg_base::settling::same_direction;
@@ -16,6 +18,9 @@ use std::{fmt, io};
 
 /// Shortest command timeout of a leg that is driven, s: a busy machine and a line by USB take some milliseconds each.
 pub(super) const COMMAND_TIME_MIN_S: f32 = 0.02;
+
+/// The command that clears faults.
+const CLEAR: &str = "`leg clear`";
 
 /// Why an operator did not get what it asked for. A `&'static str` is what the leg was asked to do, telemetry what it does
 /// now.
@@ -103,14 +108,14 @@ impl OperatorError {
                     "the leg does not {asked} before its faults are cleared ({})",
                     causes(*present)
                 ),
-                remedies_and_clear(*present),
+                remedies_and_clear(*present, CLEAR),
             ),
             Self::NotCleared(present) => Failure::refused(
                 format!(
                     "the leg keeps its faults while the cause of one is still present ({})",
                     causes(*present)
                 ),
-                remedies_and_clear(*present),
+                remedies_and_clear(*present, CLEAR),
             ),
             Self::Failed(asked, telemetry) => {
                 let place = match telemetry.failed_tendon {
@@ -123,7 +128,7 @@ impl OperatorError {
                         "the leg did not {asked}{place}, it is {state} ({})",
                         causes(present)
                     ),
-                    remedies_and_clear(present),
+                    remedies_and_clear(present, CLEAR),
                 )
             }
             Self::Limited(asked, telemetry) => {
@@ -243,15 +248,6 @@ fn angle_deg(a: [f32; 2], b: [f32; 2]) -> f64 {
         .map(|(a, b)| (a - b).powi(2))
         .sum();
     2.0 * (0.5 * chord_squared.sqrt()).asin().to_degrees()
-}
-
-fn remedies_and_clear(present: FaultSet) -> String {
-    let remedies = remedies(present);
-    // One of them says so itself.
-    if remedies.contains("clear the fault") {
-        return remedies;
-    }
-    format!("{remedies}; then `leg clear`")
 }
 
 impl From<OperatorError> for Failure {

@@ -46,10 +46,10 @@ impl Operator {
         stopped.map(|report| report.telemetry)
     }
 
-    /// The same, and waits until its motors stand, as a stop brakes them for a moment: not where the leg ramps down, nor where it does not answer any more.
+    /// The same, and waits until its motors stand, as a stop brakes them for a moment; not where the leg ramps down.
     ///
     /// # Errors
-    /// As [`Self::stop`].
+    /// As [`Self::stop`]; [`OperatorError::NoAnswer`] where it does not answer after that.
     pub fn stop_to_rest(&mut self) -> Result<Telemetry<f32>, OperatorError> {
         let mut now = self.stop()?;
         self.uncancelled(|operator| {
@@ -58,9 +58,7 @@ impl Operator {
                     break;
                 }
                 operator.pause(REST_TIME)?;
-                let Ok(report) = operator.telemetry() else {
-                    break;
-                };
+                let report = operator.telemetry()?;
                 let before = std::mem::replace(&mut now, report.telemetry);
                 if !travelled(&before.pulled_m, &now.pulled_m) {
                     break;

@@ -32,9 +32,9 @@ SIGNALS: dict[str, str]
 class Leg:
     """A leg on a serial port, commanded as by `leg home`, `leg move` and so on; or the same emulated in this process.
 
-    Each call returns at its end, with telemetry. After `move`, `stiffness` and `follow` the leg keeps station; after `home`,
-    `hold` and `stop`, after Ctrl-C and after an error it is in hold. One that homes or follows commands, and hears no more of
-    this program, is held by itself.
+    Each call returns at its end, with telemetry. After `move`, `stiffness` and `follow` the leg keeps station; after `home`
+    and `hold` it is in hold, as is one that was driven after `stop`, Ctrl-C and an error. One that homes or follows commands, and hears no
+    more of this program, is held by itself.
     Raises LegFault, Refused, LegTimeout, or LegError where the connection fails.
     """
 
@@ -95,7 +95,8 @@ class Leg:
         """Brings the leg to the state held, on its screws."""
 
     def stop(self) -> None:
-        """Stops the leg: it is in hold then. One that is disarmed or off stays so, one that ramps down goes on.
+        """Stops the leg, and returns once its motors stand: it is in hold then. One that jogs is disarmed, one that is disarmed or off stays
+        so, one that ramps down goes on.
 
         From another thread it ends the call that uses the leg, which raises LegError.
         """

@@ -1,12 +1,16 @@
 //! Whether motors, sensors and limits go together.
 
+mod cells;
 mod motors;
+mod travels;
 
 use super::RigFile;
 use crate::actuator::{ACTUATOR, Actuator};
+use crate::calibration::CALIBRATION;
 use crate::gains::{CONTROL, widened};
 use crate::motor_sections::{MOTORS, motor_section};
 use crate::number::{decimal, plain};
+use crate::plant_settings::SIMULATION;
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::sensors::CURRENT_ZERO_PART;
@@ -27,13 +31,17 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
             check_actuator(actuator, motor, root)?;
         }
     }
-    if root.has(ACTUATOR) || root.has(CONTROL) {
+    if root.has(SIMULATION) {
+        cells::check_noise(file, root)?;
+    }
+    if root.has(ACTUATOR) || root.has(CONTROL) || root.has(CALIBRATION) {
         check_limits(file, root)?;
         let warnings = motors::check(file, root)?;
         // After what a motor alone cannot do.
         for motor in 0..file.actuators.len() {
             check_driven(file, motor, root)?;
         }
+        travels::check(file, root)?;
         return Ok(warnings);
     }
     Ok(Vec::new())
@@ -136,6 +144,7 @@ fn check_motor_limits(file: &RigFile, motor: usize, root: &Section<'_>) -> Resul
     let cell_range = (cells.as_str(), actuator.cell_range_n[1]);
     let reason = "else no load cell sees too much tension";
     check_below(("tendon.f_max_n", file.f_max_n), cell_range, reason, root)?;
+    cells::check(file, motor, root)?;
 
     let servo = own("control.servo.speed_m_per_s");
     let fastest = (
@@ -181,7 +190,7 @@ fn check_driven(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<(), 
 }
 
 /// The path of a key as the file gives it for a motor, from 0: in the motor's own section or in that of all.
-fn own_path(path: &str, motor: usize, root: &Section<'_>) -> String {
+pub(super) fn own_path(path: &str, motor: usize, root: &Section<'_>) -> String {
     let Some((section, key)) = path.rsplit_once('.') else {
         return path.into();
     };
@@ -264,83 +273,4 @@ fn disordered(pair: [(&str, f64); 2], order: &str, reason: &str, root: &Section<
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test may panic")]
-mod tests {
-    use crate::ready_rigs::READY_RIGS;
-    use crate::rig_file::RigFile;
-
-    /// Each is refused with both values, at one that is given; what is just good enough is taken.
-    #[test]
-    fn limits_that_contradict_each_other_are_refused() {
-        for (section, key, bad, good, words) in [
-            (
-                "control.limits",
-                "supply_min_v",
-                "24",
-                "23.9",
-                "`control.limits.supply_min_v` (24) has to be below `actuator.supply_v` (24)",
-            ),
-            (
-                "control.limits",
-                "supply_max_v",
-                "24",
-                "24.1",
-                "`actuator.supply_v` (24) has to be below `control.limits.supply_max_v` (24)",
-            ),
-            (
-                "control.limits",
-                "temperature_c",
-                "160",
-                "159",
-                "`control.limits.temperature_c` (160) has to be below",
-            ),
-            (
-                "control.limits",
-                "slack_n",
-                "8",
-                "7.9",
-                "`control.limits.slack_n` (8) has to be below `tendon.f_min_n` (8)",
-            ),
-            (
-                "control.homing",
-                "touch_n",
-                "15",
-                "14.9",
-                "`control.homing.touch_n` (15) has to be below `control.homing.f_max_n` (15)",
-            ),
-            (
-                "control.homing",
-                "f_max_n",
-                "151",
-                "150",
-                "`control.homing.f_max_n` (151) has to be at most `tendon.f_max_n` (150)",
-            ),
-            (
-                "control.homing",
-                "speed_m_per_s",
-                "0.031",
-                "0.03",
-                "`control.homing.speed_m_per_s` (0.031) has to be at most `control.servo.speed_m_per_s` (0.03)",
-            ),
-            (
-                "control.limits",
-                "ramp_m_per_s",
-                "0.031",
-                "0.03",
-                "`control.limits.ramp_m_per_s` (0.031) has to be at most `control.servo.speed_m_per_s` (0.03)",
-            ),
-        ] {
-            let text = |value| format!("{}\n[{section}]\n{key} = {value}\n", READY_RIGS[0].text);
-            let Err(error) = RigFile::parse("a.toml", &text(bad)) else {
-                panic!("{key} = {bad} is accepted");
-            };
-            let shown = error.render(false);
-            let given = format!("{key} = {bad}");
-            let found = |at: &&str| shown.contains(at);
-            let places = ["f_min_n = ", "f_max_n = 150", &given];
-            assert!(shown.contains(words), "{shown}");
-            assert!(places.iter().any(found), "{shown}");
-            RigFile::parse("a.toml", &text(good)).unwrap();
-        }
-    }
-}
+mod tests;

@@ -32,12 +32,15 @@ pub(crate) struct Basis {
     pub lever_m: f64,
     /// The least stiffness of a tendon at the pretension, N/m.
     pub stiffness_n_per_m: f64,
+    /// The most that a tendon stretches at the highest tension, m.
+    pub stretch_m: f64,
 }
 
 impl Basis {
     /// Of each motor.
     pub fn new_all(file: &RigFile) -> [Self; 3] {
         let (lever_m, stiffness_n_per_m) = (lever_m(file), stiffness_n_per_m(file));
+        let stretch_m = stretch_m(file);
         let ranges_a = file
             .actuators
             .iter()
@@ -50,6 +53,7 @@ impl Basis {
             least_current_range_a,
             lever_m,
             stiffness_n_per_m,
+            stretch_m,
         })
     }
 }
@@ -96,6 +100,13 @@ fn stiffness_n_per_m(file: &RigFile) -> f64 {
     let all = file.tendons.iter();
     let known = all.filter_map(|tendon| tendon.stiffness(file.pretension_n).ok());
     known.fold(f64::INFINITY, f64::min)
+}
+
+/// Of the softest tendon; one whose curve does not reach the highest tension is refused elsewhere.
+pub(super) fn stretch_m(file: &RigFile) -> f64 {
+    let all = file.tendons.iter();
+    let known = all.filter_map(|tendon| tendon.elongation(file.f_max_n).ok());
+    known.fold(0.0, f64::max)
 }
 
 /// Which gains a file gives, one bit each.

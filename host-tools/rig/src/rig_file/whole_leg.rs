@@ -1,7 +1,7 @@
 //! What a leg asks of a file as a whole, beyond what its mechanism does.
 
 use super::RigFile;
-use super::consistency::{Warning, place_of};
+use super::consistency::{Warning, own_path, place_of};
 use crate::actuator::ACTUATOR;
 use crate::gains::CONTROL;
 use crate::mechanism_keys::key_of;
@@ -11,6 +11,7 @@ use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::settings::TendonParameters;
 use leg_model::{Error, Rig};
+use std::fmt::Display;
 
 /// Refuses a file of a leg with which none runs, and warns of one that may describe no more than a mechanism.
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Option<Warning>, TomlError> {
@@ -35,6 +36,7 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Option<Warning
 fn check_leg(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     check_inertia(file, root)?;
     check_bands(file, root)?;
+    check_hanging(file, root)?;
     check_rounded(file).map_err(|error| refused(error, root))
 }
 
@@ -72,6 +74,28 @@ fn check_inertia(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     ))
 }
 
+/// A leg hangs straight down when it is homed and armed, without a payload.
+fn check_hanging(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
+    let hanging = leg_model::evaluate(&file.parameters, &file.query(0.0, 0.0, 0.0));
+    let refused = |why: &dyn Display| {
+        TomlError::new(
+            root.place(&["tendon", "pretension_n"]).unwrap_or(0..0),
+            format!(
+                "the leg is not held straight down at `pretension_n` ({}): {why}",
+                plain(file.pretension_n)
+            ),
+            "see the units of `[geometry]`, `[mass]` and of the tendon's stiffness, and look at `leg eval`",
+        )
+    };
+    match hanging {
+        // Said elsewhere, at its own place.
+        Err(Error::Refused { .. }) => Ok(()),
+        Err(error) => Err(refused(&error)),
+        Ok(pose) if !pose.feasible => Err(refused(&Error::Infeasible)),
+        Ok(_) => Ok(()),
+    }
+}
+
 /// Pretensions keep off the highest tension by the band in which a motor is slowed down.
 fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     // As the firmware judges it, in f32.
@@ -91,22 +115,26 @@ fn check_bands(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
                 "give a smaller band, or a higher `f_max_n`",
             ));
         }
-        let highest_n = f_max_n - servo.f_max_band_n;
-        if file.pretension_n as f32 > highest_n {
-            return Err(TomlError::new(
-                root.place(&["tendon", "pretension_n"]).unwrap_or(0..0),
-                format!(
-                    "no pretension is led nearer to `tendon.f_max_n` ({}) than `control.servo.f_max_band_n` ({}), so `pretension_n` ({}) is not \
-                     reached",
-                    plain(file.f_max_n),
-                    plain(decimal(servo.f_max_band_n)),
-                    plain(file.pretension_n)
-                ),
-                format!("give at most {}", plain(decimal(highest_n))),
-            ));
-        }
     }
-    Ok(())
+    // The firmware keeps all targets off by the greatest.
+    let bands = file.gains.servos.map(|servo| servo.f_max_band_n);
+    let greatest_n = bands.into_iter().fold(0.0, f32::max);
+    let highest_n = f_max_n - greatest_n;
+    if file.pretension_n as f32 <= highest_n {
+        return Ok(());
+    }
+    let motor = bands.iter().position(|band| *band == greatest_n);
+    let band = own_path("control.servo.f_max_band_n", motor.unwrap_or(0), root);
+    Err(TomlError::new(
+        root.place(&["tendon", "pretension_n"]).unwrap_or(0..0),
+        format!(
+            "no pretension is led nearer to `tendon.f_max_n` ({}) than `{band}` ({}), so `pretension_n` ({}) is not reached",
+            plain(file.f_max_n),
+            plain(decimal(greatest_n)),
+            plain(file.pretension_n)
+        ),
+        format!("give at most {}", plain(decimal(highest_n))),
+    ))
 }
 
 /// What is refused in f32, at its place.
@@ -231,6 +259,15 @@ mod tests {
             "give at most 146",
         );
         RigFile::parse("a.toml", &text(146)).unwrap();
+        // The greatest of three bands counts, and is named.
+        let bands = |pretension_n| {
+            let own =
+                "\n[control.servo.1]\nf_max_band_n = 6\n[control.servo.3]\nf_max_band_n = 10\n";
+            text(pretension_n) + own
+        };
+        let named = "`control.servo.3.f_max_band_n` (10)";
+        assert_refused(&bands(148), named, "(148)", "give at most 140");
+        RigFile::parse("a.toml", &bands(140)).unwrap();
     }
 
     #[test]

@@ -14,7 +14,7 @@ use leg_firmware::telemetry::Telemetry;
 /// A tendon whose tension changes by less over a step is slack, N: the softest leg changes by some newtons.
 const SLACK_CHANGE_N: f32 = 0.5;
 
-/// How far a motor that is off may creep between two jogs, m: a hundred counts and more, and less than any jog turns one.
+/// How far a motor that is off may creep between two jogs, m: a hundred counts and more on the ready rigs, and less than any jog turns one.
 const REST_M: f32 = 1e-4;
 
 /// How often the jogs against a tension are repeated.

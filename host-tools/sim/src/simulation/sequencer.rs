@@ -66,9 +66,9 @@ impl<'a> Sequencer<'a> {
             self.began_s = stand.leg.time_s();
             self.arrived_s = None;
         }
-        // What became of a command in the last step.
-        let awaits = stand.summary.ticks > 0 && stand.awaits_answer();
-        Ok(awaits.then_some(self.steps.len()))
+        // What becomes of a command in the last step is seen. The leg ticks once in any case: without that there is nothing to report.
+        let goes_on = stand.summary.ticks == 0 || stand.awaits_answer();
+        Ok(goes_on.then_some(self.steps.len()))
     }
 
     /// Whether a step is done.

@@ -30,9 +30,6 @@ pub enum SimulationError {
     /// It takes too long.
     #[error("step {0} is not over after ten minutes of the leg's time; make the scenario shorter")]
     Endless(usize),
-    /// It takes no time.
-    #[error("no step takes time; let the last one wait, as `{{ wait_s = 1 }}` does")]
-    Timeless,
     /// A command has no form.
     #[error("a command cannot be sent: {0}")]
     Command(leg_firmware::frame::FrameError),

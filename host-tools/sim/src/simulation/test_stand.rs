@@ -28,6 +28,9 @@ pub const SAMPLE_TICKS: u32 = 16;
 /// Time that a command takes to reach the leg, s, at most.
 pub(super) const COMMAND_S: f64 = 0.02;
 
+/// Time within which it is answered, s: a leg that brakes executes no command until it stands.
+const ANSWER_S: f64 = 1.0;
+
 /// Everything but the steps.
 pub(super) struct TestStand<'a> {
     pub leg: HostedLeg<&'a mut dyn Link>,
@@ -94,10 +97,10 @@ impl<'a> TestStand<'a> {
         Ok(())
     }
 
-    /// Whether the last command may be answered yet.
+    /// Whether a command may be answered yet.
     pub fn awaits_answer(&self) -> bool {
         let last = self.unanswered.last();
-        last.is_some_and(|(_, _, at_s)| self.leg.time_s() - at_s < COMMAND_S)
+        last.is_some_and(|(_, _, at_s)| self.leg.time_s() - at_s < ANSWER_S)
     }
 
     /// Notes which commands the leg has refused in the last tick.

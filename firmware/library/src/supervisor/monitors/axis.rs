@@ -4,7 +4,7 @@ use super::{Excess, MonitorInput};
 use crate::control::{
     AxisView, CYCLE_S, CYCLE_TICKS, Debounce, LowPass, TICK_S, bounds::min, ticks,
 };
-use crate::sensors::CODE_MAX;
+use crate::sensors::{CODE_MAX, SATURATED_CODES};
 use crate::settings::{Servo, Settings};
 use crate::supervisor::{Fault, FaultSet};
 use leg_model::Scalar;
@@ -18,7 +18,7 @@ const JUMP_CHECKS: usize = 2;
 const OVER_CHECKS: u32 = 4;
 
 /// Part of `following_m` by which a motor that reels in may be away from where it is led while it goes farther.
-const AWAY_PART: f32 = 0.75;
+pub const AWAY_PART: f32 = 0.75;
 
 /// The same of one that pays out. One that has to stop or turn about from its highest speed brakes by all its current, and comes to three quarters of
 /// `following_m` (`a_motor_that_brakes_as_it_pays_out_does_not_run_away`).
@@ -59,9 +59,6 @@ const OPEN_PART: f32 = 0.25;
 /// Time constant of the filters by which current and voltage are compared, s: at low tension the voltage changes its sign from tick
 /// to tick, and the current follows later. A tenth of the time after which it is a fault.
 const LACK_TIME_S: f32 = 0.005;
-
-/// Codes this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
-const SATURATED: u16 = 64;
 
 /// Checks in a time in s, at least one: each axis has its turn once a cycle.
 fn checks(time_s: f32) -> u32 {
@@ -194,7 +191,7 @@ impl<T: Scalar> AxisMonitor<T> {
         ) else {
             return;
         };
-        let saturated = !(SATURATED..=CODE_MAX - SATURATED).contains(&code);
+        let saturated = !(SATURATED_CODES..=CODE_MAX - SATURATED_CODES).contains(&code);
         faults.add(Fault::CellSaturated, saturated);
         let stale = self.stale.update(!fresh);
         faults.add(Fault::CellStale, stale);

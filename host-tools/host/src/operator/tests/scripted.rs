@@ -6,9 +6,10 @@ use super::scripted_board::{
 use super::{is_failed, lean, stiffness};
 use crate::operator::{Operator, OperatorError};
 use leg_base::failure::Failure;
+use leg_base::timed_path::{PathRow, TimedPath};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
-use leg_firmware::supervisor::State;
+use leg_firmware::supervisor::{Fault, FaultSet, State};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use std::time::Duration;
@@ -272,6 +273,43 @@ fn a_leg_that_rests_elsewhere_reports_where() {
     assert_eq!(
         error.to_string(),
         "the leg did not move there: it came to rest at straight down"
+    );
+    assert!(is_failed(&error));
+}
+
+/// A point is refused for the ramp down: that is no bad path, and what limits the leg on its way down does not matter.
+#[test]
+fn a_path_whose_leg_another_host_disarms_has_failed() {
+    let (mut telemetry, settings) = resting_leg();
+    telemetry.state = State::Active;
+    telemetry.target = telemetry.pose;
+    telemetry.target_tensions_n = telemetry.tensions_n;
+    let mut points = 0;
+    let mut operator = scripted(move |request| {
+        Some(match request {
+            HostRequest::Telemetry => telemetry_reply(&telemetry),
+            HostRequest::GetSettings => HostReply::Settings(settings.clone()),
+            HostRequest::Command {
+                command: Command::Follow(_),
+                ..
+            } => {
+                points += 1;
+                if points < 5 {
+                    return Some(HostReply::Done);
+                }
+                telemetry.state = State::RampingDown;
+                telemetry.faults = FaultSet::single(Fault::Infeasible);
+                let state = CommandRefusal::State(State::RampingDown);
+                HostReply::Refused(HostRefusal::Command(state))
+            }
+            _ => HostReply::Done,
+        })
+    });
+    let rows = [0.0, 5.0, 10.0, 15.0, 20.0];
+    let rows = rows.map(|tilt_deg| PathRow::from_angles(0.2 * tilt_deg, 90.0, tilt_deg));
+    let error = error_of!(
+        operator.follow_whole(&TimedPath::new(&rows), Duration::from_millis(200)),
+        OperatorError::StoppedByOtherHost(_, State::RampingDown)
     );
     assert!(is_failed(&error));
 }

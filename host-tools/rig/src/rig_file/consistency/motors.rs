@@ -1,6 +1,7 @@
 //! Whether the motors can do what the settings ask of them.
 
 mod homing;
+mod monitored;
 
 use super::{RigFile, Warning, place_of};
 use crate::actuator::ACTUATOR;
@@ -71,11 +72,15 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
             warnings: Vec::new(),
         };
         checked.check_current()?;
+        checked.check_driven_voltage()?;
+        checked.check_disagreement()?;
         checked.check_heat()?;
         checked.check_speed()?;
         checked.check_homing_speed();
         checked.check_shown();
         checked.check_counts()?;
+        checked.check_following()?;
+        checked.check_residual()?;
         checked.check_bandwidth()?;
         warnings.extend(checked.warnings);
     }
@@ -115,6 +120,27 @@ impl Motor<'_> {
             "a pull with `tendon.f_max_n` ({f_max} N) takes {} A",
             plain(two_digits(pulling_a))
         );
+        let supply_v = decimal(gains.servo.duty_max) * self.basis.actuator.supply_v;
+        let dropped_v = decimal(gains.servo.resistance_ohm) * pulling_a;
+        if supply_v <= dropped_v {
+            let needed = plain(two_digits_above(
+                1.5 * dropped_v / decimal(gains.servo.duty_max),
+            ));
+            let sentence = format!(
+                "`actuator.supply_v` ({}) cannot drive a motor at the maximum tension: {asked}, which is {} V at its \
+                 resistance alone",
+                plain(self.basis.actuator.supply_v),
+                plain(two_digits(dropped_v))
+            );
+            let help = format!("give `supply_v` at least {needed}, or lower `f_max_n`");
+            let keys = [
+                "actuator.supply_v",
+                "control.servo.resistance_ohm",
+                "actuator.resistance_ohm",
+                "tendon.f_max_n",
+            ];
+            return self.refuse(&keys, sentence, help);
+        }
         if limit_a < pulling_a {
             let range = "actuator.current_range_a";
             let given = self.file.given_gains.has(SERVO, self.motor, "current_a");
@@ -141,27 +167,6 @@ impl Motor<'_> {
                 "`control.servo.current_a` ({}) cannot pull the maximum tension: {asked}",
                 plain(limit_a)
             );
-            return self.refuse(&keys, sentence, help);
-        }
-        let supply_v = decimal(gains.servo.duty_max) * self.basis.actuator.supply_v;
-        let dropped_v = decimal(gains.servo.resistance_ohm) * pulling_a;
-        if supply_v <= dropped_v {
-            let needed = plain(two_digits_above(
-                1.5 * dropped_v / decimal(gains.servo.duty_max),
-            ));
-            let sentence = format!(
-                "`actuator.supply_v` ({}) cannot drive a motor at the maximum tension: {asked}, which is {} V at its \
-                 resistance alone",
-                plain(self.basis.actuator.supply_v),
-                plain(two_digits(dropped_v))
-            );
-            let help = format!("give `supply_v` at least {needed}, or lower `f_max_n`");
-            let keys = [
-                "actuator.supply_v",
-                "control.servo.resistance_ohm",
-                "actuator.resistance_ohm",
-                "tendon.f_max_n",
-            ];
             return self.refuse(&keys, sentence, help);
         }
         Ok(())

@@ -74,7 +74,7 @@ rules! {
         |basis, _| friction_a(basis);
     Each servo.pull_a_per_n = "1.05 lead_m / (2π gear_ratio gear_efficiency screw_efficiency torque_constant_nm_per_a)",
         |basis, _| PULL_ALLOWANCE * basis.actuator.pull_a_per_n();
-    Each servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a and what continuous_a and thermal_time_s bear for 1 s",
+    Each servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a, 0.7 duty_max supply_v / (driven_part resistance_ohm) and what continuous_a and thermal_time_s bear for 1 s",
         current_a;
     Each servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
         |basis, gains| (0.95 * reachable_m_per_s(basis, gains)).min(0.03);
@@ -100,7 +100,9 @@ rules! {
         |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
     Least limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
         |_, gains| 0.5 * f64::from(gains.homing.speed_m_per_s);
-    Greatest limits.taut_time_s = "1.5 homing.release_m / ramp_m_per_s, at least 5 and at most 60",
+    Greatest limits.relax_travel_m = "1.5 times what a tendon stretches at f_max_n, and play_m, at least 0.005",
+        |basis, gains| (1.5 * (basis.stretch_m + f64::from(gains.servo.play_m))).max(5e-3);
+    Greatest limits.taut_time_s = "1.5 homing.release_m or 1.2 relax_travel_m, whichever is more, / ramp_m_per_s, at least 5 and at most 60",
         |_, gains| taut_time_s(gains);
     Greatest limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
         |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(two_digits_below(0.9 * basis.least_current_range_a));
@@ -131,14 +133,22 @@ pub(crate) fn pulling_a(f_max_n: f64, gains: &MotorGains) -> f64 {
 
 /// Twice the current of the hardest pull still counts as not driven: a motor that pulls is not taken for one that is jammed.
 fn current_a(basis: &Basis, gains: &MotorGains) -> f64 {
-    let asked = 2.0 * pulling_a(basis.f_max_n, gains) / f64::from(gains.limits.driven_part);
+    let driven_part = f64::from(gains.limits.driven_part);
+    let asked = 2.0 * pulling_a(basis.f_max_n, gains) / driven_part;
+    // One that is jammed gets no more voltage than the supply has.
+    let supply_v = 0.7 * f64::from(gains.servo.duty_max) * basis.actuator.supply_v;
+    let driven_v_per_a = driven_part * f64::from(gains.servo.resistance_ohm);
+    let driven = two_digits_below(supply_v / driven_v_per_a);
     // Rounded down first: what comes out is rounded to the nearest, and must not be beyond.
     let seen = two_digits_below(0.45 * basis.actuator.current_range_a);
     let borne = basis
         .actuator
         .current_borne_a(BORNE_S)
         .map(two_digits_below);
-    asked.min(seen).min(borne.unwrap_or(f64::INFINITY))
+    asked
+        .min(seen)
+        .min(driven)
+        .min(borne.unwrap_or(f64::INFINITY))
 }
 
 /// How fast a motor pulls its tendon at the highest tension and the nominal supply, m/s.
@@ -163,10 +173,13 @@ fn rotor_m_per_s2(basis: &Basis, current_a: f64) -> f64 {
     acceleration * actuator.m_per_rad()
 }
 
-/// Homing pays each tendon out by a step until it is slack: so far at most it is taken up again, before the tensions rise.
+/// Homing pays each tendon out by a step until it is slack, and a leg that is relaxed pays it out by the travel for that: so far at most it is taken
+/// up again, before the tensions rise.
 fn taut_time_s(gains: &MotorGains) -> f64 {
-    let taken_up_s = f64::from(gains.homing.release_m) / f64::from(gains.limits.ramp_m_per_s);
-    (1.5 * taken_up_s).clamp(5.0, 60.0)
+    let released_m = 1.5 * f64::from(gains.homing.release_m);
+    let relaxed_m = 1.2 * f64::from(gains.limits.relax_travel_m);
+    let taken_up_s = released_m.max(relaxed_m) / f64::from(gains.limits.ramp_m_per_s);
+    taken_up_s.clamp(5.0, 60.0)
 }
 
 /// Time in which the least current that counts as driven turns a rotor at rest by a count, s.

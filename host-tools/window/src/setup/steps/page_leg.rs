@@ -1,6 +1,6 @@
 //! The leg that is measured, as a page asks it: what is asked goes out after a look at the leg, and is answered by a later one.
 
-use leg_base::description;
+use leg_base::description::{self, remedies_and_clear};
 use leg_base::failure::Failure;
 use leg_base::longest_times::{longest_homing, longest_move};
 use leg_base::settling::{Settling, same_direction};
@@ -70,18 +70,16 @@ impl LegError for PageError {
 
     fn failure(&self) -> Failure {
         match self {
-            Self::Faulted(asked, faults) => {
-                let entries = || faults.faults().map(|fault| fault.entry());
-                let names: Vec<_> = entries().map(|entry| entry.name).collect();
-                let remedies: Vec<_> = entries().map(|entry| entry.remedy).collect();
-                Failure::failed(
-                    format!("to {asked} was ended by a fault: {}", names.join(", ")),
-                    format!(
-                        "{}; then clear it, disarm, and measure again",
-                        remedies.join("; ")
-                    ),
-                )
-            }
+            Self::Faulted(asked, faults) => Failure::failed(
+                format!(
+                    "to {asked} was ended by a fault: {}",
+                    description::faults(*faults)
+                ),
+                format!(
+                    "{}; then disarm, and measure again",
+                    remedies_and_clear(*faults, "Clear")
+                ),
+            ),
             Self::Stopped(asked, state) => Failure::failed(
                 format!(
                     "to {asked} was stopped: the leg is {}",

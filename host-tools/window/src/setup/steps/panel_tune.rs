@@ -82,13 +82,13 @@ fn choose(ui: &mut Ui, tune: &mut Tune, editor: &Editor, leg: &mut ShownLeg) {
     }
 }
 
-/// By which gear and screw the constants of a motor are told: no board has them.
+/// From which gear and screw the constants of a motor are computed.
 fn gear_words(motor: u8, editor: &Editor) -> String {
     let own = usize::from(motor).saturating_sub(1);
     let actuators = &editor.rig().actuators;
     actuators.get(own).map_or_else(String::new, |actuator| {
         format!(
-            "Its constants are told by gear_ratio {} and lead_m {} in [actuator] of {}: set those of the leg first, no board has them.",
+            "The motor's constants are computed from gear_ratio {} and lead_m {} in [actuator] of {}. A board does not store them: enter those of the leg first.",
             plain(actuator.gear_ratio),
             plain(actuator.lead_m),
             editor.name()

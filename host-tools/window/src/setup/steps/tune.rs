@@ -40,12 +40,30 @@ pub enum TuneStep {
     Done(Outcome),
 }
 
-/// Which rigs a measurement goes by.
+/// Which rigs a measurement uses.
 struct Rigs {
     /// By which the leg is driven.
     of_leg: RigFile,
-    /// With which it is compared.
-    set: RigFile,
+    /// With which the result is compared.
+    compared: RigFile,
+}
+
+impl Rigs {
+    /// A board stores neither gear nor screw: for a live leg these are taken from the settings of the page. All else is what the leg runs
+    /// with.
+    fn new(leg: &ShownLeg, set: &RigFile) -> Self {
+        let of_leg = *leg.rig();
+        let actuators = if leg.live().is_some() {
+            set.actuators
+        } else {
+            of_leg.actuators
+        };
+        let compared = RigFile {
+            actuators,
+            ..of_leg
+        };
+        Self { of_leg, compared }
+    }
 }
 
 /// The measurement under way.
@@ -134,7 +152,7 @@ impl Tune {
         }
     }
 
-    /// Begins. What is measured is compared with what is set: a board knows neither the gear nor the screw that the settings give.
+    /// Begins; `set` are the settings of the page.
     pub fn start(&mut self, leg: &ShownLeg, set: &RigFile) {
         let Some((jogs, swing)) = self.plan(leg) else {
             return;
@@ -143,10 +161,7 @@ impl Tune {
         self.seen = Rc::default();
         self.tick = None;
         let page_leg = PageLeg::new(self.mailbox.clone(), &settings(leg.rig()));
-        let rigs = Rigs {
-            of_leg: *leg.rig(),
-            set: *set,
-        };
+        let rigs = Rigs::new(leg, set);
         let work = measure(page_leg, jogs, swing, rigs, self.seen.clone());
         self.work = Some(Work(Box::pin(work)));
         self.step = TuneStep::Measuring;
@@ -236,7 +251,7 @@ async fn measure(
     let Some(plan) = swing else {
         return Outcome {
             motor,
-            rows: comparison(&measured, None, &rigs.set),
+            rows: comparison(&measured, None, &rigs.compared),
             servo_finding,
             failure: None,
         };
@@ -250,7 +265,7 @@ async fn measure(
     // The motor may be why, as one with more friction than is configured: what it is must not be lost.
     Outcome {
         motor,
-        rows: comparison(&measured, swings.as_ref(), &rigs.set),
+        rows: comparison(&measured, swings.as_ref(), &rigs.compared),
         servo_finding,
         failure,
     }
@@ -274,127 +289,4 @@ fn swing_words(swing: &Swing) -> String {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test may panic")]
-mod tests {
-    use super::{Outcome, Tune, TuneStep};
-    use crate::setup::editor::Editor;
-    use crate::shown_leg::ShownLeg;
-    use crate::simulation::Simulation;
-    use leg_firmware::command::Command;
-    use leg_firmware::supervisor::State;
-    use leg_rig::actuator::ACTUATOR;
-    use leg_sim::plant::Defect;
-
-    /// A disarmed leg, and the measurement of a motor that has begun.
-    fn begun(swings: bool) -> (ShownLeg, Tune) {
-        begun_with(swings, &[])
-    }
-
-    /// The same beside settings in which some are changed.
-    fn begun_with(swings: bool, changes: &[(&str, &str)]) -> (ShownLeg, Tune) {
-        let mut leg = ShownLeg::Simulated(Box::new(Simulation::new().unwrap()));
-        leg.command(Command::Disarm, "disarm");
-        while leg.state() != State::Disarmed {
-            leg.advance(0.02, 0.0);
-        }
-        for _ in 0..50 {
-            leg.advance(0.02, 0.0);
-        }
-        let mut tune = Tune {
-            motor: 2,
-            swings,
-            ..Tune::default()
-        };
-        while tune.plan(&leg).is_none() {
-            tune.ask_supply(&mut leg);
-            leg.advance(0.02, 0.0);
-        }
-        let mut editor = Editor::new(leg.source()).unwrap();
-        for (key, value) in changes {
-            assert!(editor.set(ACTUATOR, key, value), "{:?}", editor.refused());
-        }
-        tune.start(&leg, editor.rig());
-        (leg, tune)
-    }
-
-    /// Goes on for some seconds of the leg, or until it is measured.
-    fn go_on(leg: &mut ShownLeg, tune: &mut Tune, for_s: f64) -> Option<Outcome> {
-        let until_s = leg.time_s() + for_s;
-        while leg.time_s() < until_s {
-            leg.advance_watched(0.02, 0.0, &mut |leg| tune.look(leg));
-            if let TuneStep::Done(outcome) = tune.step() {
-                return Some(outcome.clone());
-            }
-        }
-        None
-    }
-
-    #[test]
-    fn a_motor_and_the_swing_are_what_the_simulated_leg_has() {
-        let (mut leg, mut tune) = begun(true);
-        let outcome = go_on(&mut leg, &mut tune, 400.0).unwrap();
-        println!(
-            "{:.1} s; {}",
-            leg.time_s(),
-            leg_rig::tune::table(&outcome.rows)
-        );
-        assert_eq!((outcome.failure, outcome.servo_finding), (None, None));
-        for (name, within) in [
-            ("resistance_ohm", 0.05),
-            ("servo, phase margin", 0.05),
-            ("backlash_rad, motor 1", 0.3),
-            ("leg_transverse_inertia_kg_m2", 0.1),
-        ] {
-            let row = outcome.rows.iter().find(|row| row.name == name).unwrap();
-            let off = row.measured.value / row.configured.unwrap() - 1.0;
-            assert!(off.abs() < within, "{row:?}");
-            assert!(row.measured.uncertainty > 0.0, "{row:?}");
-        }
-        for _ in 0..20 {
-            leg.advance(0.02, 0.0);
-        }
-        assert_eq!(leg.state(), State::Held);
-    }
-
-    /// A board knows how far its tendons go for a count, and no gear: the constants are told by the gear that is set.
-    #[test]
-    fn constants_are_told_by_the_gear_that_is_set() {
-        let torque_constant = |changes: &[(&str, &str)]| {
-            let (mut leg, mut tune) = begun_with(false, changes);
-            let outcome = go_on(&mut leg, &mut tune, 400.0).unwrap();
-            assert_eq!(outcome.failure, None);
-            let rows = outcome.rows.iter();
-            let mut found = rows.filter(|row| row.name == "torque_constant_nm_per_a");
-            found.next().unwrap().measured.value
-        };
-        let own = torque_constant(&[]);
-        let others = torque_constant(&[("gear_ratio", "8.8")]);
-        assert!((others / own - 0.5).abs() < 0.02, "{own} {others}");
-    }
-
-    #[test]
-    fn a_fault_ends_it_and_is_named() {
-        let (mut leg, mut tune) = begun(false);
-        assert_eq!(go_on(&mut leg, &mut tune, 2.0), None);
-        let simulation = leg.simulated_mut().unwrap();
-        simulation.set_defect(Defect::SupplySag, true);
-        let outcome = go_on(&mut leg, &mut tune, 30.0).unwrap();
-        let words = outcome.failure.unwrap();
-        assert!(
-            words.contains("supply") && words.contains("help: "),
-            "{words}"
-        );
-        assert!(outcome.rows.is_empty() && !leg.state().driven());
-    }
-
-    #[test]
-    fn a_stop_ends_it_at_any_time() {
-        let (mut leg, mut tune) = begun(false);
-        assert_eq!(go_on(&mut leg, &mut tune, 2.0), None);
-        leg.command(Command::Stop, "stop");
-        let outcome = go_on(&mut leg, &mut tune, 5.0).unwrap();
-        let words = outcome.failure.unwrap();
-        assert!(words.contains("stopped"), "{words}");
-        assert!(!leg.state().driven());
-    }
-}
+mod tests;

@@ -10,17 +10,19 @@ impl Motor<'_> {
     /// A motor has to stop as its tendon becomes taut.
     pub(super) fn check_homing_speed(&mut self) {
         let homing = decimal(self.gains.homing.speed_m_per_s);
-        let highest = 0.5 * decimal(self.gains.servo.speed_m_per_s);
+        let servo = decimal(self.gains.servo.speed_m_per_s);
+        let highest = 0.5 * servo;
         if homing > highest {
             let keys = [
                 "control.homing.speed_m_per_s",
                 "control.servo.speed_m_per_s",
             ];
             let text = format!(
-                "`{}` ({}) is more than half of `{}`, and homing may fail as tendons are pulled too hard before their motors stop: give at most {}",
+                "`{}` ({}) is more than half of `{}` ({}), and homing may fail as tendons are pulled too hard before their motors stop: give at most {}",
                 keys[0],
                 plain(homing),
                 keys[1],
+                plain(servo),
                 plain(highest)
             );
             self.warn(&keys, text);

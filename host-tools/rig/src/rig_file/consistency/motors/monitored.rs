@@ -1,0 +1,144 @@
+//! Whether the monitors of a motor can find what they look for, and nothing where all is well.
+
+use super::Motor;
+use crate::number::{decimal, plain};
+use crate::rig_file::derived::{two_digits, two_digits_above, two_digits_below};
+use crate::toml_error::TomlError;
+use leg_firmware::control::LIMITED_AHEAD_M;
+use leg_firmware::supervisor::AWAY_PART;
+use leg_model::Elasticity;
+
+/// Part of the lowest supply that is left to a motor which counts as driven.
+const LEFT_PART: f64 = 0.95;
+
+/// Multiple of the maximum tension that a motor which runs away may pull with before it is found, more than which is warned of.
+const RUNAWAY_MULTIPLE: f64 = 2.0;
+
+impl Motor<'_> {
+    /// One that is jammed or counts the wrong way gets no more voltage than the supply has.
+    pub(super) fn check_driven_voltage(&self) -> Result<(), TomlError> {
+        let (servo, limits) = (&self.gains.servo, &self.gains.limits);
+        let part = decimal(limits.driven_part);
+        let driven_v = part * decimal(servo.current_a) * decimal(servo.resistance_ohm);
+        let supply_v = LEFT_PART * decimal(servo.duty_max) * decimal(limits.supply_min_v);
+        if driven_v <= supply_v && part <= LEFT_PART {
+            return Ok(());
+        }
+        let keys = [
+            "control.limits.driven_part",
+            "control.servo.current_a",
+            "control.servo.resistance_ohm",
+            "actuator.resistance_ohm",
+        ];
+        let fit = (part * supply_v / driven_v).min(LEFT_PART);
+        let sentence = format!(
+            "a motor counts as driven from {} V, `{}` ({}) of what `{}` ({}) needs, and gets no more than {} V at `control.limits.supply_min_v`: that it \
+             is jammed, or counts the wrong way, is not found",
+            plain(two_digits(driven_v)),
+            keys[0],
+            plain(part),
+            keys[1],
+            plain(decimal(servo.current_a)),
+            plain(two_digits(supply_v))
+        );
+        let help = format!(
+            "give `driven_part` at most {}, or less current",
+            plain(two_digits_below(fit))
+        );
+        self.refuse(&keys, sentence, help)
+    }
+
+    /// How far a motor may be from where it is led.
+    pub(super) fn check_following(&mut self) -> Result<(), TomlError> {
+        let following_m = decimal(self.gains.limits.following_m);
+        let band_m = decimal(self.gains.servo.dead_band_m);
+        let least_m = (decimal(LIMITED_AHEAD_M) / 0.9).max(1.1 * band_m);
+        let keys = ["control.limits.following_m", "control.servo.dead_band_m"];
+        let words = format!("`{}` ({})", keys[0], plain(following_m));
+        if following_m < least_m {
+            let sentence = format!(
+                "{words} is less than what a sound motor stays behind, at rest in `{}` ({}) or as the maximum tension slows it",
+                keys[1],
+                plain(band_m)
+            );
+            let help = format!("give at least {}", plain(two_digits_above(least_m)));
+            return self.refuse(&keys, sentence, help);
+        }
+        let f_max_n = self.file.f_max_n;
+        let tendons = self.file.tendons.iter();
+        let stiffnesses = tendons.filter_map(|tendon| tendon.stiffness(f_max_n).ok());
+        let stiffness_n_per_m = stiffnesses.fold(0.0, f64::max);
+        let pulled_n = f64::from(AWAY_PART) * following_m * stiffness_n_per_m;
+        let most_n = RUNAWAY_MULTIPLE * f_max_n;
+        if pulled_n > most_n {
+            let fit = two_digits_below(following_m * most_n / pulled_n);
+            let text = format!(
+                "{words} lets a motor that runs away pull with {} N more before it is found: {} would do",
+                plain(two_digits(pulled_n)),
+                plain(fit)
+            );
+            self.warn(&keys[..1], text);
+        }
+        Ok(())
+    }
+
+    /// A current that no servo drives is not seen to differ. Motors that differ have one limit together.
+    pub(super) fn check_disagreement(&self) -> Result<(), TomlError> {
+        let differs_a = decimal(self.gains.limits.disagreement_a);
+        let servos = self.file.gains.servos.iter();
+        let beyond_a = servos.map(|servo| decimal(servo.current_a) - decimal(servo.friction_a));
+        let most_a = beyond_a.fold(0.0, f64::max);
+        if differs_a < most_a {
+            return Ok(());
+        }
+        let keys = ["control.limits.disagreement_a", "control.servo.current_a"];
+        let sentence = format!(
+            "no current differs by `{}` ({}) from what friction takes: `{}` leaves {} A for it",
+            keys[0],
+            plain(differs_a),
+            keys[1],
+            plain(two_digits(most_a))
+        );
+        let help = format!("give at most {}", plain(two_digits_below(0.9 * most_a)));
+        self.refuse(&keys, sentence, help)
+    }
+
+    /// What forward kinematics leaves over is told from the resolution of the sensors, and its change from itself.
+    pub(super) fn check_residual(&self) -> Result<(), TomlError> {
+        let limits = &self.gains.limits;
+        let residual_m = decimal(limits.residual_m);
+        let change_m = decimal(limits.residual_change_m);
+        let root_3 = 3.0_f64.sqrt();
+        let cell_n = 16.0 * self.file.calibration.cell_n_per_code[self.motor];
+        let tendons = self.file.tendons.iter();
+        let stiffnesses = tendons.filter_map(|tendon| tendon.stiffness(self.file.f_min_n).ok());
+        let stiffness_n_per_m = stiffnesses.fold(f64::INFINITY, f64::min);
+        let least_m = root_3 * (self.basis.m_per_count + cell_n / stiffness_n_per_m);
+        let keys = [
+            "control.limits.residual_m",
+            "control.limits.residual_change_m",
+        ];
+        if residual_m < least_m {
+            let sentence = format!(
+                "`{}` ({}) is less than what counts and load cells resolve, {} m",
+                keys[0],
+                plain(residual_m),
+                plain(two_digits(least_m))
+            );
+            let help = format!("give at least {}", plain(two_digits_above(2.0 * least_m)));
+            return self.refuse(&keys[..1], sentence, help);
+        }
+        if root_3 * change_m >= residual_m {
+            let sentence = format!(
+                "`{}` ({}) is so much that `{}` ({}) comes first, and a load cell that is off is not found",
+                keys[1],
+                plain(change_m),
+                keys[0],
+                plain(residual_m)
+            );
+            let help = format!("give at most {}", plain(two_digits_below(0.5 * residual_m)));
+            return self.refuse(&[keys[1], keys[0]], sentence, help);
+        }
+        Ok(())
+    }
+}
