@@ -55,6 +55,7 @@ mod base {
 
 mod rig {
     mod other_motors;
+    mod other_tendons;
     mod own_motors;
     mod refused_rigs;
     mod rig_settings;

@@ -34,13 +34,22 @@ pub(crate) struct Basis {
     pub stiffness_n_per_m: f64,
     /// The most that a tendon stretches at the highest tension, m.
     pub stretch_m: f64,
+    /// The greatest stiffness of a tendon at the tensions of homing, N/m.
+    pub homing_stiffness_n_per_m: f64,
 }
+
+/// The highest tension of homing, N, where it is not given.
+const HOMING_MAX_N: f64 = 15.0;
 
 impl Basis {
     /// Of each motor.
     pub fn new_all(file: &RigFile) -> [Self; 3] {
         let (lever_m, stiffness_n_per_m) = (lever_m(file), stiffness_n_per_m(file));
         let stretch_m = stretch_m(file);
+        let homing_n = file.f_max_n.min(HOMING_MAX_N);
+        let all = file.tendons.iter();
+        let homing_stiffnesses = all.filter_map(|tendon| tendon.stiffness(homing_n).ok());
+        let homing_stiffness_n_per_m = homing_stiffnesses.fold(0.0, f64::max);
         let ranges_a = file
             .actuators
             .iter()
@@ -54,6 +63,7 @@ impl Basis {
             lever_m,
             stiffness_n_per_m,
             stretch_m,
+            homing_stiffness_n_per_m,
         })
     }
 }

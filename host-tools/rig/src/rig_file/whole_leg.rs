@@ -16,7 +16,7 @@ use std::fmt::Display;
 /// Refuses a file of a leg with which none runs, and warns of one that may describe no more than a mechanism.
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Option<Warning>, TomlError> {
     let Err(error) = check_leg(file, root) else {
-        return Ok(None);
+        return Ok(tilt_warning(file, root));
     };
     if [ACTUATOR, CONTROL, SIMULATION]
         .iter()
@@ -94,6 +94,32 @@ fn check_hanging(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
         Ok(pose) if !pose.feasible => Err(refused(&Error::Infeasible)),
         Ok(_) => Ok(()),
     }
+}
+
+/// A leg leans to the edge of its workspace in every direction.
+fn tilt_warning(file: &RigFile, root: &Section<'_>) -> Option<Warning> {
+    let held = |tilt_deg: f64| {
+        (0..12).all(|part| {
+            let query = file.query(30.0 * f64::from(part), tilt_deg, 0.0);
+            leg_model::evaluate(&file.parameters, &query).is_ok_and(|pose| pose.feasible)
+        })
+    };
+    if held(file.tilt_deg) {
+        return None;
+    }
+    let whole_deg = file.tilt_deg.ceil() as u32;
+    let fit_deg = (1..whole_deg).rev().map(f64::from).find(|deg| held(*deg));
+    let remedy = fit_deg.map_or_else(
+        || "see the units of `[mass]` and `[geometry]`".into(),
+        |deg| format!("{} would do", plain(deg)),
+    );
+    Some(Warning {
+        span: root.place(&["workspace", "tilt_deg"]).unwrap_or(0..0),
+        text: format!(
+            "no tensions within `tendon.f_min_n` and `tendon.f_max_n` hold the leg in every direction at `tilt_deg` ({}): {remedy}",
+            plain(file.tilt_deg)
+        ),
+    })
 }
 
 /// Pretensions keep off the highest tension by the band in which a motor is slowed down.
@@ -270,6 +296,28 @@ mod tests {
         RigFile::parse("a.toml", &bands(140)).unwrap();
     }
 
+    /// Where the units of one section are other ones, there is no leg.
+    #[test]
+    fn a_leg_that_cannot_be_held_is_refused_or_warned_of() {
+        let tilt = notes(&changed(&[("tilt_deg = 30", "tilt_deg = 60")], LEG));
+        let [note] = &tilt[..] else {
+            panic!("{tilt:?}");
+        };
+        assert!(note.contains("at `tilt_deg` (60): 57 would do"), "{note}");
+        assert_refused(
+            &changed(
+                &[(
+                    "[[24, 0], [-12, 20.784609690826528], [-12, -20.784609690826528]]",
+                    "[[0.024, 0], [-0.012, 0.0208], [-0.012, -0.0208]]",
+                )],
+                LEG,
+            ),
+            "pretension_n = 70",
+            "the leg is not held straight down at `pretension_n` (70)",
+            "see the units of `[geometry]`",
+        );
+    }
+
     #[test]
     fn a_band_that_leaves_no_tension_is_refused() {
         let sentence = "`f_max_band_n` (143) leaves no tension";
@@ -301,7 +349,10 @@ mod tests {
             ("pretension_n = 70", "pretension_n = 5.7"),
         ];
         let text = changed(&exact, "");
-        assert_eq!(notes(&text), [""; 0]);
+        let bands = notes(&text)
+            .into_iter()
+            .filter(|note| note.contains("band"));
+        assert_eq!(bands.count(), 0);
     }
 
     #[test]

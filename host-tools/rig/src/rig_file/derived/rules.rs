@@ -1,6 +1,6 @@
 //! The rules by which gains and limits follow from the motors.
 
-use super::{Basis, MotorGains, ServoLoop, two_digits_below};
+use super::{Basis, HOMING_MAX_N, MotorGains, ServoLoop, two_digits_below};
 use leg_firmware::control::{FRICTION_ALLOWANCE, PULL_ALLOWANCE};
 use leg_firmware::settings::{Field, POSITION_GAIN_MAX_PER_S};
 use std::f64::consts::TAU;
@@ -47,6 +47,9 @@ pub(super) const NO_FIELD: Field<f64> = Field::new("", "", "", [0.0, f64::MAX], 
 /// Time for which a motor has to bear the highest current of its servo, s: twenty times what the monitors need to end it.
 pub(crate) const BORNE_S: f64 = 1.0;
 
+/// Time for which a tendon that is found taut is pulled on, s: the filter of its tension and the servo's brake.
+const STOPPED_S: f64 = 0.004;
+
 /// Part of the phase in which a servo is not near to ringing, degrees.
 pub(crate) const MARGIN_DEG: f64 = 45.0;
 
@@ -92,10 +95,10 @@ rules! {
         |basis, gains| (0.9 * f64::from(gains.servo.speed_m_per_s) / basis.lever_m.max(1e-9)).min(0.8);
     Least motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, at most 4",
         |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
-    Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
-        |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains));
+    Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01, what servo.current_a gives the rotor in 5 ms, and what pulls a tendon from touch_n to homing.f_max_n in 4 ms",
+        |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains)).min(stopped_m_per_s(basis, gains));
     Least homing.f_max_n = "tendon.f_max_n, at most 15" exact,
-        |basis, _| basis.f_max_n.min(15.0);
+        |basis, _| basis.f_max_n.min(HOMING_MAX_N);
     Least motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
         |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
     Least limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
@@ -164,6 +167,14 @@ pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
 fn started_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
     let free_a = f64::from(gains.servo.current_a) - f64::from(gains.servo.friction_a);
     5e-3 * rotor_m_per_s2(basis, free_a)
+}
+
+/// The speed at which a motor that finds its tendon taut stops before it pulls with the highest tension of homing, m/s. Tendons of 3e5 to 1e6 N/m
+/// were pulled for 2.5 to 3.5 ms (`stiff_tendons_are_homed_below_the_ceiling`).
+pub(crate) fn stopped_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
+    let homing = &gains.homing;
+    let left_n = f64::from(homing.f_max_n).min(basis.f_max_n) - f64::from(homing.touch_n);
+    left_n / (STOPPED_S * basis.homing_stiffness_n_per_m)
 }
 
 /// What a current that nothing else needs gives a rotor, as an acceleration of the tendon, m/s².

@@ -2,7 +2,8 @@
 
 use super::Motor;
 use crate::number::{decimal, plain};
-use crate::rig_file::derived::two_digits_above;
+use crate::rig_file::derived::rules::stopped_m_per_s;
+use crate::rig_file::derived::{two_digits_above, two_digits_below};
 use leg_firmware::control::SHOWN_PART;
 use leg_firmware::settings::CurrentOutput;
 
@@ -26,6 +27,18 @@ impl Motor<'_> {
                 plain(highest)
             );
             self.warn(&keys, text);
+        }
+        let stopped = stopped_m_per_s(&self.basis, &self.gains);
+        // What is derived is rounded to two digits.
+        if homing > 1.05 * stopped {
+            let key = "control.homing.speed_m_per_s";
+            let text = format!(
+                "`{key}` ({}) pulls a tendon beyond `control.homing.f_max_n` ({}) before its motor stops, by its stiffness: give at most {}",
+                plain(homing),
+                plain(decimal(self.gains.homing.f_max_n)),
+                plain(two_digits_below(stopped))
+            );
+            self.warn(&[key], text);
         }
     }
 
