@@ -74,7 +74,7 @@ def test_commands_that_the_leg_refused_are_told(tmp_path):
     (told,) = single["refused"]
     assert told.startswith("keep_station (") and ": " in told
     (row,) = campaign([{"scenario": text}], tmp_path)
-    assert row["refused"] == told
+    assert row["refused"] == [told]
     (without,) = campaign([{"scenario": "hold"}], tmp_path)
     assert not without["refused"] and run_scenario("hold")["refused"] == []
 

@@ -48,18 +48,19 @@ def test_a_slack_leg_is_homed_moved_stopped_cleared_and_disarmed():
 
 
 def test_slow_settings_have_the_time_that_they_take():
-    def slow(section, key, value):
+    def slow(**control):
         values = Rig("table1").to_dict()
-        values["control"] = {section: {key: value}}
+        values["control"] = control
         leg = SimulatedLeg(Rig.from_dict(values))
         leg.arm()
         return leg
 
-    leg = slow("motion", "pretension_rate_n_per_s", 0.5)
+    leg = slow(motion={"pretension_rate_n_per_s": 0.5})
     begun_s = leg.time_s
     leg.pretension(110.0)
     assert leg.time_s - begun_s == pytest.approx(80.0, abs=5.0)
-    leg = slow("limits", "ramp_m_per_s", 2e-5)
+    leg = slow(motion={"speed_rad_per_s": 0.01}, limits={"ramp_m_per_s": 9e-5})
+    leg.move(0.0, 29.0)
     begun_s = leg.time_s
     leg.disarm()
     assert leg.state == "disarmed" and leg.time_s - begun_s > 60.0

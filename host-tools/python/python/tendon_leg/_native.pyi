@@ -95,8 +95,8 @@ class Leg:
         """Brings the leg to the state held, on its screws."""
 
     def stop(self) -> None:
-        """Stops the leg, and returns once its motors stand: it is in hold then. One that jogs is disarmed, one that is disarmed or off stays
-        so, one that ramps down goes on.
+        """Stops the leg, and returns once its motors stand: it is in hold then. One that jogs is disarmed, one that is disarmed or off stays so,
+        one that ramps down goes on.
 
         From another thread it ends the call that uses the leg, which raises LegError.
         """
