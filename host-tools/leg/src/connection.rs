@@ -46,7 +46,7 @@ pub(crate) struct ConnectionArgs {
     #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["on", "port"])]
     can: Option<String>,
     /// The address of the leg on the CAN bus, 1 to 6.
-    #[arg(long, value_name = "N", requires = "can", default_value = "1", value_parser = leg_address)]
+    #[arg(long, value_name = "N", requires = "can", conflicts_with_all = ["on", "port"], default_value = "1", value_parser = leg_address)]
     leg: LegAddress,
 }
 
