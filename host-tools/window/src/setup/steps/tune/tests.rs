@@ -100,7 +100,7 @@ fn a_live_leg_is_compared_with_the_motor_of_the_page_and_its_own_gains() {
     let mut editor = Editor::new(live.source()).unwrap();
     assert!(editor.set(ACTUATOR, "gear_ratio", "8.8"));
     assert!(
-        editor.set("control.servo", "pole_hz", "20"),
+        editor.set("control.servo", "position_gain_per_s", "100"),
         "{:?}",
         editor.refused()
     );
