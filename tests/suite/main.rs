@@ -54,6 +54,7 @@ mod base {
 }
 
 mod rig {
+    mod other_legs;
     mod other_motors;
     mod other_tendons;
     mod own_motors;

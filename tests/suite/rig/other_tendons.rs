@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::other_legs::with_stiffness;
 use leg_bench::stand::Stand;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
@@ -10,12 +11,8 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
 
 /// The paper's rig with tendons of one stiffness, N/m.
-fn with_stiffness(n_per_m: f64) -> RigFile {
-    let (mechanism, rest) = READY_RIGS[0].text.split_once("[tendon.curve]").unwrap();
-    let (_, workspace) = rest.split_once("[workspace]").unwrap();
-    let stiffness = format!("stiffness_n_per_m = {n_per_m}");
-    let mechanism = mechanism.replace("stiffness_at = \"pretension\"", &stiffness);
-    RigFile::parse("tendons", &format!("{mechanism}[workspace]{workspace}")).unwrap()
+fn rig(n_per_m: f64) -> RigFile {
+    RigFile::parse("tendons", &with_stiffness(READY_RIGS[0].text, n_per_m)).unwrap()
 }
 
 /// Waits for a state, and gives the highest true tension until then, N.
@@ -38,7 +35,7 @@ fn highest_until(stand: &mut Stand, state: State, longest_s: f64) -> f64 {
 #[test]
 fn stiff_tendons_are_homed_below_the_ceiling() {
     for n_per_m in [1e5, 3e5, 6e5, 1e6] {
-        let rig = with_stiffness(n_per_m);
+        let rig = rig(n_per_m);
         let homing = &rig.gains.homing;
         let mut stand = Stand::new(&rig, &rig.plant, Start::Slack { slack_mm: 2.0 }, 1).unwrap();
         stand.wait(0.2).unwrap();
@@ -61,7 +58,7 @@ fn stiff_tendons_are_homed_below_the_ceiling() {
 #[test]
 fn soft_tendons_are_slack_after_a_disarm() {
     for n_per_m in [9_945.0, 2e4] {
-        let rig = with_stiffness(n_per_m);
+        let rig = rig(n_per_m);
         let start = Start::hanging(rig.f_max_n - 5.0);
         let mut stand = Stand::new(&rig, &rig.plant, start, 1).unwrap();
         stand.wait(0.2).unwrap();

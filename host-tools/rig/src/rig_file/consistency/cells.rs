@@ -71,7 +71,7 @@ pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<
                 plain(touch_n)
             ),
             format!(
-                "give a range in which a step is at most {} N",
+                "give a range in which a step is at most {} N, or a longer `release_m` and a higher `touch_n`",
                 plain(two_digits(coarsest_n))
             ),
         );

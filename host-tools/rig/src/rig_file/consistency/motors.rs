@@ -77,6 +77,7 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
         checked.check_heat()?;
         checked.check_speed()?;
         checked.check_homing_speed();
+        checked.check_touch();
         checked.check_shown();
         checked.check_counts()?;
         checked.check_following()?;

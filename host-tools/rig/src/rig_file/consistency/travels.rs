@@ -21,7 +21,7 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError>
 
 /// A tendon is paid out until it is slack, from the maximum tension, too.
 fn check_relaxed(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
-    let stretch_m = stretch_m(file);
+    let stretch_m = stretch_m(file, file.f_max_n);
     let servos = file.gains.servos.iter();
     let play_m = servos
         .map(|servo| decimal(servo.play_m))

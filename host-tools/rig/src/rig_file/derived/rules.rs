@@ -1,6 +1,6 @@
 //! The rules by which gains and limits follow from the motors.
 
-use super::{Basis, HOMING_MAX_N, MotorGains, ServoLoop, two_digits_below};
+use super::{Basis, HOMING_MAX_N, MotorGains, ServoLoop, TOUCH_N, two_digits_below};
 use leg_firmware::control::{FRICTION_ALLOWANCE, PULL_ALLOWANCE};
 use leg_firmware::settings::{Field, POSITION_GAIN_MAX_PER_S};
 use std::f64::consts::TAU;
@@ -77,7 +77,7 @@ rules! {
         |basis, _| friction_a(basis);
     Each servo.pull_a_per_n = "1.05 lead_m / (2π gear_ratio gear_efficiency screw_efficiency torque_constant_nm_per_a)",
         |basis, _| PULL_ALLOWANCE * basis.actuator.pull_a_per_n();
-    Each servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a, 0.7 duty_max supply_v / (driven_part resistance_ohm) and what continuous_a and thermal_time_s bear for 1 s",
+    Each servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a, 0.7 duty_max supply_v / (driven_part resistance_ohm), up to 0.94 of it where 1.1 of the pull takes more, and what continuous_a and thermal_time_s bear for 1 s",
         current_a;
     Each servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
         |basis, gains| (0.95 * reachable_m_per_s(basis, gains)).min(0.03);
@@ -95,6 +95,10 @@ rules! {
         |basis, gains| (0.9 * f64::from(gains.servo.speed_m_per_s) / basis.lever_m.max(1e-9)).min(0.8);
     Least motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, at most 4",
         |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
+    Least homing.touch_n = "what lifts the leg, and stretches a tendon, by 2/3 of homing.release_m, at most 2",
+        |basis, gains| touch_n(basis, gains).min(TOUCH_N);
+    Greatest homing.settle_time_s = "2.7 × the leg's inertia / motion.joint_damping_nm_s_per_rad, at least 1.5 and at most 10",
+        |basis, gains| settle_time_s(basis, gains);
     Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01, what servo.current_a gives the rotor in 5 ms, and what pulls a tendon from touch_n to homing.f_max_n in 4 ms",
         |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains)).min(stopped_m_per_s(basis, gains));
     Least homing.f_max_n = "tendon.f_max_n, at most 15" exact,
@@ -138,10 +142,12 @@ pub(crate) fn pulling_a(f_max_n: f64, gains: &MotorGains) -> f64 {
 fn current_a(basis: &Basis, gains: &MotorGains) -> f64 {
     let driven_part = f64::from(gains.limits.driven_part);
     let asked = 2.0 * pulling_a(basis.f_max_n, gains) / driven_part;
-    // One that is jammed gets no more voltage than the supply has.
-    let supply_v = 0.7 * f64::from(gains.servo.duty_max) * basis.actuator.supply_v;
-    let driven_v_per_a = driven_part * f64::from(gains.servo.resistance_ohm);
-    let driven = two_digits_below(supply_v / driven_v_per_a);
+    // One that is jammed gets no more voltage than the supply has, and one that pulls is not taken for one.
+    let supply_v = f64::from(gains.servo.duty_max) * basis.actuator.supply_v;
+    let resistance_ohm = f64::from(gains.servo.resistance_ohm);
+    let pulling_v = resistance_ohm * pulling_a(basis.f_max_n, gains);
+    let driven_v = (1.1 * pulling_v).clamp(0.7 * supply_v, 0.94 * supply_v);
+    let driven = two_digits_below(driven_v / (driven_part * resistance_ohm));
     // Rounded down first: what comes out is rounded to the nearest, and must not be beyond.
     let seen = two_digits_below(0.45 * basis.actuator.current_range_a);
     let borne = basis
@@ -167,6 +173,19 @@ pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
 fn started_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
     let free_a = f64::from(gains.servo.current_a) - f64::from(gains.servo.friction_a);
     5e-3 * rotor_m_per_s2(basis, free_a)
+}
+
+/// The tension of a tendon that has lifted the leg by so much that paying it out by `release_m` makes it slack again, with half as much to spare, N. More, and
+/// homing fails, or finds a wrong zero (`wide_and_light_legs_find_their_zero`).
+pub(crate) fn touch_n(basis: &Basis, gains: &MotorGains) -> f64 {
+    let lifted_m = f64::from(gains.homing.release_m) / 1.5 - basis.touch_stretch_m;
+    lifted_m / basis.lift_m_per_n.max(1e-12)
+}
+
+/// A leg that is averaged while it swings has a wrong zero (`a_long_leg_finds_its_zero`). The amplitude falls to a quarter in this time.
+fn settle_time_s(basis: &Basis, gains: &MotorGains) -> f64 {
+    let damping = f64::from(gains.motion.joint_damping_nm_s_per_rad);
+    (2.7 * basis.inertia_kg_m2 / damping.max(1e-9)).clamp(1.5, 10.0)
 }
 
 /// The speed at which a motor that finds its tendon taut stops before it pulls with the highest tension of homing, m/s. Tendons of 3e5 to 1e6 N/m

@@ -2,8 +2,8 @@
 
 use super::Motor;
 use crate::number::{decimal, plain};
-use crate::rig_file::derived::rules::stopped_m_per_s;
-use crate::rig_file::derived::{two_digits_above, two_digits_below};
+use crate::rig_file::derived::rules::{stopped_m_per_s, touch_n};
+use crate::rig_file::derived::{two_digits, two_digits_above, two_digits_below};
 use leg_firmware::control::SHOWN_PART;
 use leg_firmware::settings::CurrentOutput;
 
@@ -40,6 +40,30 @@ impl Motor<'_> {
             );
             self.warn(&[key], text);
         }
+    }
+
+    /// A tendon that is found taut has lifted the leg, and has to become slack as it is paid out again.
+    pub(super) fn check_touch(&mut self) {
+        let homing = &self.gains.homing;
+        let touch = decimal(homing.touch_n);
+        let fit = touch_n(&self.basis, &self.gains);
+        // What is derived is rounded to two digits.
+        if touch <= 1.05 * fit {
+            return;
+        }
+        let lifted_m = touch * self.basis.lift_m_per_n;
+        let keys = ["control.homing.touch_n", "control.homing.release_m"];
+        let text = format!(
+            "a tendon that pulls with `{}` ({}) comes in by {} m as it lifts the leg, and `{}` ({}) may not make it slack again: give at most {}, or a \
+             longer `release_m`",
+            keys[0],
+            plain(touch),
+            plain(two_digits(lifted_m)),
+            keys[1],
+            plain(decimal(homing.release_m)),
+            plain(two_digits_below(fit.max(0.0)))
+        );
+        self.warn(&keys, text);
     }
 
     /// An output that is silent in short pulses shows a motor that homes.

@@ -8,7 +8,7 @@ use leg_firmware::control::LIMITED_AHEAD_M;
 use leg_firmware::supervisor::AWAY_PART;
 use leg_model::Elasticity;
 
-/// Part of the lowest supply that is left to a motor which counts as driven.
+/// Part of the supply at which a motor counts as driven, at most.
 const LEFT_PART: f64 = 0.95;
 
 /// Multiple of the maximum tension that a motor which runs away may pull with before it is found, more than which is warned of.
@@ -20,7 +20,7 @@ impl Motor<'_> {
         let (servo, limits) = (&self.gains.servo, &self.gains.limits);
         let part = decimal(limits.driven_part);
         let driven_v = part * decimal(servo.current_a) * decimal(servo.resistance_ohm);
-        let supply_v = LEFT_PART * decimal(servo.duty_max) * decimal(limits.supply_min_v);
+        let supply_v = LEFT_PART * decimal(servo.duty_max) * self.basis.actuator.supply_v;
         if driven_v <= supply_v && part <= LEFT_PART {
             return Ok(());
         }
@@ -32,7 +32,7 @@ impl Motor<'_> {
         ];
         let fit = (part * supply_v / driven_v).min(LEFT_PART);
         let sentence = format!(
-            "a motor counts as driven from {} V, `{}` ({}) of what `{}` ({}) needs, and gets no more than {} V at `control.limits.supply_min_v`: that it \
+            "a motor counts as driven from {} V, `{}` ({}) of what `{}` ({}) needs, and `actuator.supply_v` gives it little more than {} V: that it \
              is jammed, or counts the wrong way, is not found",
             plain(two_digits(driven_v)),
             keys[0],
