@@ -7,6 +7,9 @@ use crate::rig_file::derived::{two_digits, two_digits_above, two_digits_below};
 use leg_firmware::control::SHOWN_PART;
 use leg_firmware::settings::CurrentOutput;
 
+/// The least that `touch_n` may be, N.
+const TOUCH_MIN_N: f64 = 0.1;
+
 impl Motor<'_> {
     /// A motor has to stop as its tendon becomes taut.
     pub(super) fn check_homing_speed(&mut self) {
@@ -53,15 +56,19 @@ impl Motor<'_> {
         }
         let lifted_m = touch * self.basis.lift_m_per_n;
         let keys = ["control.homing.touch_n", "control.homing.release_m"];
+        let remedy = if fit < TOUCH_MIN_N {
+            format!("give a longer `{}`", keys[1])
+        } else {
+            let fit = plain(two_digits_below(fit));
+            format!("give at most {fit}, or a longer `{}`", keys[1])
+        };
         let text = format!(
-            "a tendon that pulls with `{}` ({}) comes in by {} m as it lifts the leg, and `{}` ({}) may not make it slack again: give at most {}, or a \
-             longer `release_m`",
+            "a tendon that pulls with `{}` ({}) comes in by {} m as it lifts the leg, and `{}` ({}) may not make it slack again: {remedy}",
             keys[0],
             plain(touch),
             plain(two_digits(lifted_m)),
             keys[1],
-            plain(decimal(homing.release_m)),
-            plain(two_digits_below(fit.max(0.0)))
+            plain(decimal(homing.release_m))
         );
         self.warn(&keys, text);
     }
