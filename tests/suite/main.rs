@@ -58,6 +58,7 @@ mod rig {
     mod other_motors;
     mod other_tendons;
     mod own_motors;
+    mod random_rigs;
     mod refused_rigs;
     mod rig_settings;
 }

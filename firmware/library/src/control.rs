@@ -42,6 +42,7 @@ pub use load_estimate::{LoadEstimate, LoadEstimation};
 pub use magnitude::{Applied, Magnitude, SHOWN_PART};
 pub use measure::{Measured, Measurement, ZERO_READINGS};
 pub use mechanism::Mechanism;
+pub use payload_estimate::UNKNOWN_MOVED_KG;
 pub use plan::{MotionLimits, REACHED};
 pub use play::Play;
 pub use pretension::{PretensionDemand, PretensionSearch};

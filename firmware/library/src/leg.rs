@@ -41,8 +41,8 @@ use leg_model::{Error, Scalar};
 use link_watch::LinkWatch;
 use mode::{Mode, ModeStep, Trust};
 use phase::Phase;
-pub use shared::Checked;
 use shared::Shared;
+pub use shared::{Checked, SLACK_M};
 use stretch::StretchSearch;
 
 /// The controller of a leg.

@@ -9,7 +9,8 @@ mod state;
 pub use fault::{FAULT_TABLE, Fault, FaultEntry};
 pub use fault_set::FaultSet;
 pub use monitors::{
-    AWAY_PART, Agreement, ErrorGrowth, Excess, FAR_CYCLES, MonitorInput, Monitors, SETTLE_CYCLES,
+    AWAY_PART, Agreement, ErrorGrowth, Excess, FAR_CYCLES, JAMMED_PART, MonitorInput, Monitors,
+    SETTLE_CYCLES,
 };
 pub use reaction::{Clearing, Reaction};
 pub use state::{Event, State};

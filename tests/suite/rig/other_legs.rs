@@ -38,8 +38,8 @@ pub fn with_stiffness(text: &str, n_per_m: f64) -> String {
     format!("{mechanism}[workspace]{workspace}")
 }
 
-/// Homes a leg, and gives the most that a tendon's zero is off, mm.
-fn zero_off_mm(rig: &RigFile) -> f64 {
+/// A leg that was homed just now.
+fn homed(rig: &RigFile) -> Stand {
     let mut stand = Stand::new(rig, &rig.plant, Start::Slack { slack_mm: 2.0 }, 1).unwrap();
     stand.wait(0.2).unwrap();
     stand.command(&Command::Home).unwrap();
@@ -48,6 +48,12 @@ fn zero_off_mm(rig: &RigFile) -> f64 {
         .tick_until(90.0, "active", |stand| stand.state() == State::Active)
         .unwrap();
     assert!(!stand.faults().any(), "{:?}", stand.faults());
+    stand
+}
+
+/// Homes a leg, and gives the most that a tendon's zero is off, mm.
+fn zero_off_mm(rig: &RigFile) -> f64 {
+    let mut stand = homed(rig);
     let found_m = stand.telemetry.unwrap().unstretched_at_zero_m;
     let real_m = stand.plant().unstretched_at_zero_m();
     let pairs = found_m.iter().zip(real_m);
@@ -70,6 +76,24 @@ fn wide_and_light_legs_find_their_zero() {
         assert!(touch_n.contains(&homing.touch_n), "{} N", homing.touch_n);
         assert!(off_mm < ZERO_MM, "{off_mm} mm");
     }
+}
+
+/// Tendons that are longer than any pose of such a leg makes them show none, until they are taut again.
+#[test]
+fn a_leg_with_narrow_anchors_is_armed() {
+    let tall = [
+        ("upper_mm = 6", "upper_mm = 20"),
+        ("joint_mm = 29", "joint_mm = 45"),
+    ];
+    let rig = rig(&tall, 13.0, "");
+    let mut stand = homed(&rig);
+    stand.wait(3.0).unwrap();
+    assert!(!stand.faults().any(), "{:?}", stand.faults());
+    let [pretension_n, wanted_n] = [
+        f64::from(stand.telemetry.unwrap().pretension_n),
+        rig.pretension_n,
+    ];
+    assert!((pretension_n - wanted_n).abs() < 0.1, "{pretension_n} N");
 }
 
 /// Its swing decays slowly: averaged after 1.5 s, the zero is off by 0.12 mm.

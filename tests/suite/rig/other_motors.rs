@@ -3,14 +3,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::other_legs::with_stiffness;
 use crate::sim::station_stand::{armed, pass, ticks};
 use leg_base::failure::Failure;
-use leg_bench::stand::move_to;
+use leg_bench::stand::{Stand, move_to};
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::State;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::derived::derived_gains;
 use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::link::InProcess;
-use leg_sim::plant::Defect;
+use leg_sim::plant::{Defect, Start};
 use leg_sim::scenario::Scenario;
 use leg_sim::simulation::Simulation;
 
@@ -149,6 +152,45 @@ fn a_motor_that_jams_is_found_whatever_its_gear() {
     }
 }
 
+/// What is told of a long homing is what it takes, within a fifth.
+#[test]
+fn a_long_homing_is_told_before() {
+    for gear_ratio in [28, 40] {
+        let file = RigText {
+            name: "slow".into(),
+            text: text(&format!("gear_ratio = {gear_ratio}\n")),
+        };
+        let (rig, notes) = file.read().unwrap();
+        let told = notes.iter().find_map(|note| {
+            let (_, rest) = note.split_once("homing takes some ")?;
+            rest.split_once(" s ")?.0.parse::<f64>().ok()
+        });
+        let told_s = told.unwrap_or_else(|| panic!("{notes:?}"));
+        let mut stand = Stand::new(&rig, &rig.plant, Start::Slack { slack_mm: 1.0 }, 1).unwrap();
+        stand.wait(0.2).unwrap();
+        stand.command(&Command::Home).unwrap();
+        stand.wait(0.1).unwrap();
+        stand
+            .tick_until(300.0, "active", |stand| stand.state() == State::Active)
+            .unwrap();
+        let lasts_s = stand.time_s() - 0.2;
+        assert!(
+            (told_s / lasts_s - 1.0).abs() < 0.2,
+            "{told_s} s, {lasts_s} s"
+        );
+    }
+}
+
+/// A count of the encoder is as much as a light rotor goes in a check as it starts.
+#[test]
+fn coarse_counts_of_a_light_rotor_do_not_jump() {
+    let motor = "resistance_ohm = 1.93415\ninductance_h = 0.000217929\ntorque_constant_nm_per_a = 0.0266031\ninertia_kg_m2 = 9.83867e-07\n\
+                 friction_nm = 0.000908567\ngear_ratio = 2.64231\nlead_m = 0.0005\ncounts_per_turn = 256\nsupply_v = 12\nsupply_range_v = 18\n\
+                 current_range_a = 5\nscrew_efficiency = 0.340036\nbacklash_rad = 0.0441434\n";
+    let rig = RigFile::parse("coarse", &with_stiffness(&text(motor), 3.7e5)).unwrap();
+    work("coarse", &rig).unwrap();
+}
+
 /// What the file is refused for: the key at the place, words of the sentence, and what the help would have.
 #[test]
 fn motors_that_cannot_work_are_refused_at_their_key() {
@@ -285,6 +327,19 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
         (
             "[control.servo]\nspeed_gain_v_s_per_m = 3500\n",
             "phase margin",
+        ),
+        ("gear_ratio = 40\n", "homing takes some 1"),
+        (
+            "[simulation]\nsupply_resistance_ohm = 1\n",
+            "falls below `control.limits.supply_min_v` (18): up to 0.96 Ω",
+        ),
+        (
+            "lead_m = 4e-3\ngear_ratio = 1\nbacklash_rad = 0.05\n",
+            "throws its rotor to and fro within a play of 3.2e-5 m",
+        ),
+        (
+            "[control.limits]\nsupply_min_v = 4\n",
+            "is not found between that and `control.limits.supply_min_v` (4): ",
         ),
     ] {
         let file = text(actuator);

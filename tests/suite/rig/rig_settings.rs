@@ -69,6 +69,8 @@ fn a_scenarios_gain_wins_over_the_rigs_and_the_rigs_over_the_default() {
     }
     others.homing.speed_m_per_s = by_default.homing.speed_m_per_s;
     others.limits.ramp_m_per_s = by_default.limits.ramp_m_per_s;
+    others.motion.acceleration_rad_per_s2 = by_default.motion.acceleration_rad_per_s2;
+    others.motion.pretension_rate_n_per_s = by_default.motion.pretension_rate_n_per_s;
     others.limits.jump_n = by_default.limits.jump_n;
     others.homing.touch_n = by_default.homing.touch_n;
     assert_eq!(others, by_default, "nothing else");

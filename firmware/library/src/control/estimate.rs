@@ -100,7 +100,7 @@ impl<T: Scalar> Estimator<T> {
     /// `target_torsion`, rad, is the elastic one of a leg whose tendons are slack; taut ones show it by themselves.
     ///
     /// # Errors
-    /// A tension beyond a tendon's curve; what forward kinematics refuses.
+    /// A tension beyond a tendon's curve; what forward kinematics refuses of tendons that are taut.
     #[inline(always)]
     pub fn update(
         &mut self,
@@ -126,10 +126,22 @@ impl<T: Scalar> Estimator<T> {
         let torsion = self.torsion;
         let mut twisted = None;
         let found = if mechanism.support.kind() == SupportKind::Universal {
-            forward_kinematics_universal(mechanism.rig.geometry(), &lengths, &self.direction)?
+            forward_kinematics_universal(mechanism.rig.geometry(), &lengths, &self.direction)
         } else {
             let geometry = mechanism.geometry(&self.direction, torsion, &mut twisted);
-            forward_kinematics(geometry, &lengths, &self.direction)?
+            forward_kinematics(geometry, &lengths, &self.direction)
+        };
+        let found = match found {
+            // Tendons that are longer than any pose makes them show none, where their anchors are narrow: the last one stays until they pull.
+            Err(_) if slack => {
+                return Ok(Estimate {
+                    direction: self.direction,
+                    residual_m: T::zero(),
+                    lengths_m: lengths.into(),
+                    length_error: None,
+                });
+            }
+            found => found?,
         };
         self.direction = found.direction;
         let mut length_error = None;

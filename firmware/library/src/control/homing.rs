@@ -190,7 +190,7 @@ impl<T: Scalar> HomingSequence<T> {
         };
         let mut found = None;
         let tendons = self.steady.iter_mut().zip(&mut self.hauling);
-        let tendons = (1..).zip(tendons).zip(&self.limits);
+        let tendons = (1..).zip(tendons).zip(&mut self.limits);
         let shown = measured.tensions_n.iter().zip(&measured.currents_a);
         for (((number, (steady, hauling)), limit), (&tension, &current)) in tendons.zip(shown) {
             let shows = !(steady.step(tension).abs() <= self.slack_n);

@@ -46,6 +46,9 @@ const OFF_NM2: f32 = 1.6e-3;
 /// `tests/suite/bench/moves.rs` holds both.
 const MOVED_PART: f32 = 0.9;
 
+/// The payload whose inertia is moved where nothing has shown one yet, kg.
+pub const UNKNOWN_MOVED_KG: f32 = UNKNOWN_KG2 * MOVED_PART;
+
 /// The payload, kg, and its variance.
 #[derive(Clone, Copy, Debug)]
 pub struct PayloadEstimate<T> {

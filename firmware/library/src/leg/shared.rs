@@ -60,7 +60,7 @@ pub struct Shared<T> {
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
 /// hanging leg plays by a millimetre.
-const SLACK_M: f32 = 1e-4;
+pub const SLACK_M: f32 = 1e-4;
 
 /// A tendon that is beyond the maximum tension by 2.5 of the bands in which the servo slows down, 10 N at the default, is paid out by
 /// the whole speed, and nearer to it by the square of what it is beyond: it gives way before it is 10 % beyond, and is hardly paid out by a

@@ -144,7 +144,7 @@ fields! {
         /// Speed at which tendons are paid out when they have to be relaxed.
         ramp_m_per_s ["m/s"]: 1e-5..=0.1 = 5e-3;
         /// Longest time from an arm until every tendon pulls.
-        taut_time_s ["s"]: 0.01..=60.0 = 5.0;
+        taut_time_s ["s"]: 0.01..=600.0 = 5.0;
         /// Farthest that a tendon is paid out when it has to be relaxed.
         relax_travel_m ["m"]: 1e-6..=0.1 = 5e-3;
     }

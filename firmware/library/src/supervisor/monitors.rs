@@ -8,8 +8,8 @@ use crate::control::{AxisView, Debounce, Measured, ticks};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
 pub use agreement::{Agreement, ErrorGrowth, FAR_CYCLES, SETTLE_CYCLES};
-pub use axis::AWAY_PART;
 use axis::AxisMonitor;
+pub use axis::{AWAY_PART, JAMMED_PART};
 
 use leg_model::Scalar;
 

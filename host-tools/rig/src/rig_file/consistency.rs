@@ -31,11 +31,9 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
             check_actuator(actuator, motor, root)?;
         }
     }
-    if root.has(SIMULATION) {
-        cells::check_noise(file, root)?;
-    }
     if root.has(ACTUATOR) || root.has(CONTROL) || root.has(CALIBRATION) {
         check_limits(file, root)?;
+        cells::check_noise(file, root)?;
         let warnings = motors::check(file, root)?;
         // After what a motor alone cannot do.
         for motor in 0..file.actuators.len() {
@@ -43,6 +41,9 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
         }
         travels::check(file, root)?;
         return Ok(warnings);
+    }
+    if root.has(SIMULATION) {
+        cells::check_noise(file, root)?;
     }
     Ok(Vec::new())
 }

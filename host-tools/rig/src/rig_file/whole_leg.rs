@@ -1,8 +1,11 @@
 //! What a leg asks of a file as a whole, beyond what its mechanism does.
 
+mod lean;
+
 use super::RigFile;
 use super::consistency::{Warning, own_path, place_of};
 use crate::actuator::ACTUATOR;
+use crate::calibration::CALIBRATION;
 use crate::gains::CONTROL;
 use crate::mechanism_keys::key_of;
 use crate::number::{decimal, plain};
@@ -16,9 +19,9 @@ use std::fmt::Display;
 /// Refuses a file of a leg with which none runs, and warns of one that may describe no more than a mechanism.
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Option<Warning>, TomlError> {
     let Err(error) = check_leg(file, root) else {
-        return Ok(tilt_warning(file, root));
+        return Ok(lean::warning(file, root));
     };
-    if [ACTUATOR, CONTROL, SIMULATION]
+    if [ACTUATOR, CALIBRATION, CONTROL, SIMULATION]
         .iter()
         .any(|section| root.has(section))
     {
@@ -94,32 +97,6 @@ fn check_hanging(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
         Ok(pose) if !pose.feasible => Err(refused(&Error::Infeasible)),
         Ok(_) => Ok(()),
     }
-}
-
-/// A leg leans to the edge of its workspace in every direction.
-fn tilt_warning(file: &RigFile, root: &Section<'_>) -> Option<Warning> {
-    let held = |tilt_deg: f64| {
-        (0..12).all(|part| {
-            let query = file.query(30.0 * f64::from(part), tilt_deg, 0.0);
-            leg_model::evaluate(&file.parameters, &query).is_ok_and(|pose| pose.feasible)
-        })
-    };
-    if held(file.tilt_deg) {
-        return None;
-    }
-    let whole_deg = file.tilt_deg.ceil() as u32;
-    let fit_deg = (1..whole_deg).rev().map(f64::from).find(|deg| held(*deg));
-    let remedy = fit_deg.map_or_else(
-        || "see the units of `[mass]` and `[geometry]`".into(),
-        |deg| format!("{} would do", plain(deg)),
-    );
-    Some(Warning {
-        span: root.place(&["workspace", "tilt_deg"]).unwrap_or(0..0),
-        text: format!(
-            "no tensions within `tendon.f_min_n` and `tendon.f_max_n` hold the leg in every direction at `tilt_deg` ({}): {remedy}",
-            plain(file.tilt_deg)
-        ),
-    })
 }
 
 /// Pretensions keep off the highest tension by the band in which a motor is slowed down.
@@ -304,6 +281,20 @@ mod tests {
             panic!("{tilt:?}");
         };
         assert!(note.contains("at `tilt_deg` (60): 57 would do"), "{note}");
+        // What is offered is taken.
+        for (pretension_n, words) in [("20", "(20) is raised"), ("140", "(140) is lowered")] {
+            let line = format!("pretension_n = {pretension_n}");
+            let leaning = notes(&changed(&[("pretension_n = 70", &line)], LEG));
+            let [note] = &leaning[..] else {
+                panic!("{leaning:?}");
+            };
+            assert!(note.contains(words), "{note}");
+            let (_, offered) = note.split_once("limit: ").unwrap();
+            let (offered, _) = offered.split_once(' ').unwrap();
+            let line = format!("pretension_n = {offered}");
+            let better = notes(&changed(&[("pretension_n = 70", &line)], LEG));
+            assert_eq!(better, [String::new(); 0], "{offered}");
+        }
         assert_refused(
             &changed(
                 &[(

@@ -14,6 +14,8 @@ pub struct HaulLimit<T> {
     most_a: T,
     /// What of that the tension asks for, or friction changes by, A.
     pull_a: T,
+    /// Whether the last current reeled in.
+    inwards: bool,
 }
 
 impl<T: Scalar> HaulLimit<T> {
@@ -23,13 +25,17 @@ impl<T: Scalar> HaulLimit<T> {
         Self {
             most_a: jog.current_max_a,
             pull_a: bounds::max(jog.pull_max_a, friction_a * T::from(FRICTION_SPREAD)),
+            inwards: false,
         }
     }
 
-    /// Whether a current, A, is too much.
+    /// Whether a current, A, is too much, and has the direction of the last one: a motor that starts and brakes at a tendon that the swinging leg leaves
+    /// slack again turns about, and one that hauls does not.
     #[inline(always)]
-    pub fn exceeded(&self, current_a: T) -> bool {
-        !(current_a.abs() <= self.most_a)
+    pub fn exceeded(&mut self, current_a: T) -> bool {
+        let inwards = current_a > T::zero();
+        let turned = core::mem::replace(&mut self.inwards, inwards) != inwards;
+        !(current_a.abs() <= self.most_a) && !turned
     }
 
     /// By what the motor draws while its tendon is slack, A, but no higher than by the settings.
@@ -49,9 +55,11 @@ mod tests {
             let mut limit = HaulLimit {
                 most_a: 0.3,
                 pull_a: 0.1,
+                inwards: false,
             };
             limit.lower(friction_a);
-            for sign in [1.0, -1.0] {
+            for sign in [1.0_f64, -1.0] {
+                assert!(!limit.exceeded(sign * (expected_a + 1e-6)), "turned");
                 assert!(!limit.exceeded(sign * (expected_a - 1e-6)));
                 assert!(limit.exceeded(sign * (expected_a + 1e-6)));
             }

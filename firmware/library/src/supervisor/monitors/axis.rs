@@ -36,7 +36,8 @@ const ACCELERATED_MULTIPLE: f32 = 2.5;
 /// The most of that, as a part of `following_m`: the gains tell the acceleration of a servo that was made soft as much greater than it is.
 const ACCELERATED_MAX: f32 = 0.1;
 
-/// The same in counts where these are coarse: a motor that starts counts one at once.
+/// What is added to that in counts, where these are coarse: a motor that starts counts one at once, and one that goes by a part of a count counts a
+/// whole one (`coarse_counts_of_a_light_rotor_do_not_jump`).
 const STEP_COUNTS: f32 = 1.5;
 
 /// What a voltage drives through a winding at the resistance of the settings, as a multiple of what it drives through a warm one:
@@ -47,7 +48,7 @@ const WARM_RATIO: f32 = 1.3;
 /// Part of the highest voltage that a motor can get which one that is jammed gets in any case. Less than one, or no voltage would show a
 /// jam where the maximum tension takes nearly all of it. At a half, a motor without a gear whose windings are warm is taken for
 /// jammed (`tests/suite/rig/other_motors.rs`).
-const JAMMED_PART: f32 = 0.95;
+pub const JAMMED_PART: f32 = 0.95;
 
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
 /// is known no better.
@@ -154,8 +155,7 @@ impl<T: Scalar> AxisMonitor<T> {
                 jump_n: limits.jump_n.into(),
                 step_m: T::from(
                     (STEP_PART * servo.speed_m_per_s * TICK_S)
-                        .max(accelerated_m)
-                        .max(STEP_COUNTS * m_per_count.abs()),
+                        .max(accelerated_m + STEP_COUNTS * m_per_count.abs()),
                 ),
                 following_m: limits.following_m.into(),
                 away_m: T::from(AWAY_PART * limits.following_m),

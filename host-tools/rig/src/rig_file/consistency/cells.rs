@@ -1,7 +1,8 @@
 //! Whether the load cells show what homing and the monitors look for.
 
 use super::{RigFile, own_path, place_of};
-use crate::actuator::ACTUATOR;
+use crate::actuator::{ACTUATOR, Actuator};
+use crate::calibration::CALIBRATION;
 use crate::number::{decimal, plain};
 use crate::plant_settings::SIMULATION;
 use crate::rig_file::derived::two_digits;
@@ -14,7 +15,7 @@ use leg_firmware::sensors::{CODE_MAX, SATURATED_CODES};
 const STEP_PART: f64 = 0.25;
 
 /// Codes of a step of the 12-bit converter, whose sixteenfold sum a code is.
-const STEP_CODES: f64 = 16.0;
+pub(super) const STEP_CODES: f64 = 16.0;
 
 /// Refuses load cells of a motor, from 0, that are saturated where something is looked for, or too coarse for it.
 pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<(), TomlError> {
@@ -25,24 +26,32 @@ pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<
     let lowest_n = (f64::from(SATURATED_CODES) - zero_code) * n_per_code;
     let over_n = file.f_max_n * (1.0 + decimal(limits.over_tension_part));
     let touch_n = decimal(homing.touch_n);
+    let touch = ["control", "homing", "touch_n"];
     let step_n = STEP_CODES * n_per_code;
     let coarsest_n = STEP_PART * touch_n;
-    let cells = own_path("actuator.cell_range_n", motor, root);
-    let refused = |sentence: String, help: String| {
+    let cell = format!(
+        "load cell {} (`{}`, `{CALIBRATION}`)",
+        motor + 1,
+        own_path("actuator.cell_range_n", motor, root)
+    );
+    let refused = |others: &[&[&str]], sentence: String, help: String| {
         let calibration = ["cell_n_per_code", "cell_zero_code"];
-        let place = place_of(&[ACTUATOR, "cell_range_n"], motor, root)
-            .or_else(|| {
-                calibration
-                    .iter()
-                    .find_map(|key| root.place(&["calibration", key]))
-            })
-            .or_else(|| root.place(&["tendon", "f_max_n"]));
+        let place = calibration
+            .iter()
+            .find_map(|key| root.place(&[CALIBRATION, key]))
+            .or_else(|| place_of(&[ACTUATOR, "cell_range_n"], motor, root))
+            .or_else(|| others.iter().find_map(|path| root.place(path)));
         Err(TomlError::new(place.unwrap_or(0..0), sentence, help))
     };
     if highest_n <= over_n {
+        let others: [&[&str]; 2] = [
+            &["control", "limits", "over_tension_part"],
+            &["tendon", "f_max_n"],
+        ];
         return refused(
+            &others,
             format!(
-                "a load cell (`{cells}`, `calibration`) is saturated above {} N, before its tension is found too high: `tendon.f_max_n` ({}) and \
+                "{cell} is saturated above {} N, before its tension is found too high: `tendon.f_max_n` ({}) and \
                  `control.limits.over_tension_part` ({}) of it",
                 plain(two_digits(highest_n)),
                 plain(file.f_max_n),
@@ -51,13 +60,20 @@ pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<
             format!("let it show more than {} N", plain(two_digits(over_n))),
         );
     }
-    // An offset of so much is usual, and homing takes it.
-    if -lowest_n < touch_n {
+    // An offset of so much is usual, and homing takes it; one that was measured drifts by a part of it.
+    let measured = root.has(CALIBRATION) && zero_code != file.actuators[motor].cell_zero_code();
+    let offset_n = if measured {
+        STEP_PART * touch_n
+    } else {
+        touch_n
+    };
+    if -lowest_n < offset_n {
         return refused(
+            &[&touch],
             format!(
-                "a load cell (`{cells}`, `calibration`) is saturated below {} N, and so is a slack one with an offset of less than \
-                 `control.homing.touch_n` ({})",
+                "{cell} is saturated below {} N, and so is a slack one with an offset of {} N, by `control.homing.touch_n` ({})",
                 plain(two_digits(lowest_n)),
+                plain(two_digits(-offset_n)),
                 plain(touch_n)
             ),
             "let its range begin lower".into(),
@@ -65,8 +81,9 @@ pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<
     }
     if step_n > coarsest_n {
         return refused(
+            &[&touch],
             format!(
-                "a step of a load cell (`{cells}`, `calibration`) is {} N, too coarse for `control.homing.touch_n` ({})",
+                "a step of {cell} is {} N, too coarse for `control.homing.touch_n` ({})",
                 plain(two_digits(step_n)),
                 plain(touch_n)
             ),
@@ -79,19 +96,19 @@ pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<
     Ok(())
 }
 
-/// A code that does not change is that of a cell that is stuck.
+/// A code that does not change is that of a cell that is stuck. The simulated leg has the cells of the actuators' data.
 pub(super) fn check_noise(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let noise_n = file.plant.cell_noise_n;
-    let n_per_code = file
-        .calibration
-        .cell_n_per_code
-        .into_iter()
-        .fold(0.0, f64::max);
+    let cells = file.actuators.iter().map(Actuator::cell_n_per_code);
+    let n_per_code = cells.fold(0.0, f64::max);
     if noise_n >= 0.5 * n_per_code {
         return Ok(());
     }
+    let place = root.place(&[SIMULATION, "cell_noise_n"]);
+    let place = place.or_else(|| root.place(&[ACTUATOR, "cell_range_n"]));
+    let place = place.or_else(|| root.place(&[ACTUATOR]));
     Err(TomlError::new(
-        root.place(&[SIMULATION, "cell_noise_n"]).unwrap_or(0..0),
+        place.unwrap_or(0..0),
         format!(
             "with `{SIMULATION}.cell_noise_n` ({}) the codes of the simulated load cells do not change, as those of cells that are stuck",
             plain(noise_n)

@@ -2,6 +2,7 @@
 
 mod homing;
 mod monitored;
+mod rest;
 
 use super::{RigFile, Warning, place_of};
 use crate::actuator::ACTUATOR;
@@ -17,9 +18,6 @@ use std::ops::Range;
 
 /// Phase margin below which a servo rings whatever the motor, degrees.
 const LEAST_MARGIN_DEG: f64 = 30.0;
-
-/// What the tip may be off by the dead band of the motors before it is worth a warning, m.
-const TIP_M: f64 = 5e-5;
 
 /// Keys of `[actuator]` that say which motor it is.
 const MOTOR_KEYS: [&str; 6] = [
@@ -44,7 +42,7 @@ struct Motor<'a> {
     warnings: Vec<Warning>,
 }
 
-/// Checks each motor, or one of them if all are the same.
+/// Checks each motor, or one of them if all are the same, and what they have together.
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, TomlError> {
     let mut warnings = Vec::new();
     let bases = Basis::new_all(file);
@@ -52,43 +50,64 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
         file.actuators[motor] == file.actuators[0]
             && file.gains.servos[motor] == file.gains.servos[0]
             && file.calibration.m_per_count[motor] == file.calibration.m_per_count[0]
+            && file.calibration.cell_n_per_code[motor] == file.calibration.cell_n_per_code[0]
     };
     let all_same = same(1) && same(2);
     for (motor, basis) in bases.into_iter().enumerate() {
         if motor > 0 && all_same {
             break;
         }
-        let mut checked = Motor {
-            file,
-            root,
-            motor,
-            named: if all_same {
-                String::new()
-            } else {
-                format!("motor {}: ", motor + 1)
-            },
-            basis,
-            gains: MotorGains::new(&file.gains, motor),
-            warnings: Vec::new(),
+        let named = if all_same {
+            String::new()
+        } else {
+            format!("motor {}: ", motor + 1)
         };
+        let mut checked = Motor::new(file, root, motor, basis, named);
         checked.check_current()?;
         checked.check_driven_voltage()?;
-        checked.check_disagreement()?;
         checked.check_heat()?;
         checked.check_speed()?;
         checked.check_homing_speed();
-        checked.check_touch();
         checked.check_shown();
+        checked.check_cell_step();
         checked.check_counts()?;
+        checked.check_play();
         checked.check_following()?;
         checked.check_residual()?;
         checked.check_bandwidth()?;
         warnings.extend(checked.warnings);
     }
+    let [first, ..] = bases;
+    let mut together = Motor::new(file, root, 0, first, String::new());
+    together.check_disagreement()?;
+    together.check_touch();
+    together.check_stopped();
+    together.check_duration();
+    together.check_runaway();
+    together.check_supply_dip();
+    warnings.extend(together.warnings);
     Ok(warnings)
 }
 
-impl Motor<'_> {
+impl<'a> Motor<'a> {
+    fn new(
+        file: &'a RigFile,
+        root: &'a Section<'a>,
+        motor: usize,
+        basis: Basis,
+        named: String,
+    ) -> Self {
+        Self {
+            file,
+            root,
+            motor,
+            named,
+            basis,
+            gains: MotorGains::new(&file.gains, motor),
+            warnings: Vec::new(),
+        }
+    }
+
     /// The place of the first of the keys that the file gives.
     fn place(&self, keys: &[&str]) -> Range<usize> {
         let path =
@@ -278,62 +297,6 @@ impl Motor<'_> {
                 plain(least)
             )
         }
-    }
-
-    /// A motor comes to rest within the dead band only if its counts are fine enough.
-    fn check_counts(&mut self) -> Result<(), TomlError> {
-        let (count_m, band_m) = (
-            self.basis.m_per_count,
-            decimal(self.gains.servo.dead_band_m),
-        );
-        let keys = [
-            "control.servo.dead_band_m",
-            "calibration.m_per_count",
-            "actuator.counts_per_turn",
-        ];
-        let words = format!(
-            "`control.servo.dead_band_m` ({}) is narrower than a count of the encoder, {} m",
-            plain(band_m),
-            plain(two_digits(count_m))
-        );
-        let help = format!(
-            "give at least {}, or an encoder of more counts",
-            plain(two_digits_above(1.8 * count_m))
-        );
-        // Half a count away from every count there is a place that none is nearer to.
-        if band_m < 0.499 * count_m {
-            return self.refuse(
-                &keys,
-                format!("{words}: the motor never comes to rest"),
-                help,
-            );
-        }
-        if band_m < 0.999 * count_m {
-            self.warn(&keys, format!("{words}: {help}"));
-        }
-        let parameters = &self.file.parameters;
-        let tip_m = parameters.joint_length_m + parameters.leg_length_m;
-        let off_m = band_m * tip_m / self.basis.lever_m.max(1e-9);
-        if off_m > TIP_M {
-            let given = self.file.given_gains.has(SERVO, self.motor, "dead_band_m");
-            let remedy = if given {
-                let band_m = two_digits_below(band_m * TIP_M / off_m);
-                format!("a band of {} would do", plain(band_m))
-            } else {
-                let counts = self.basis.actuator.counts_per_turn * off_m / TIP_M;
-                format!(
-                    "`counts_per_turn` of {} would do",
-                    plain(two_digits_above(counts))
-                )
-            };
-            let text = format!(
-                "a motor rests anywhere within `control.servo.dead_band_m` ({}), which is {} mm at the tip: {remedy}",
-                plain(band_m),
-                plain(two_digits(off_m * 1000.0)),
-            );
-            self.warn(&keys, text);
-        }
-        Ok(())
     }
 
     /// The servo with the delays of its sampling, its speed and its winding.

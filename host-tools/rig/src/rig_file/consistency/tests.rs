@@ -114,7 +114,7 @@ fn settings_that_cannot_work_are_refused() {
             "cell_range_n",
             "[-2000, 23000]",
             "[-150, 1800]",
-            "a step of a load cell (`actuator.cell_range_n`, `calibration`) is 6.1 N, too coarse for `control.homing.touch_n` (2)",
+            "a step of load cell 1 (`actuator.cell_range_n`, `calibration`) is 6.1 N, too coarse for `control.homing.touch_n` (2)",
         ),
         (
             "simulation",
@@ -135,7 +135,7 @@ fn settings_that_cannot_work_are_refused() {
             "relax_travel_m",
             "0.0024",
             "0.0026",
-            "stretches by 0.0023 m, and `control.limits.relax_travel_m` (0.0024) does not make it slack",
+            "and `control.limits.relax_travel_m` (0.0024) does not make it slack",
         ),
         (
             "control.limits",

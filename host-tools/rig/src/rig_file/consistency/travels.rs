@@ -1,13 +1,14 @@
 //! Whether tendons get as far as they have to within the travels and times that are set.
 
 use super::{RigFile, check_below};
+use crate::actuator::ACTUATOR;
+use crate::gains::CONTROL;
 use crate::number::{decimal, plain};
 use crate::rig_file::derived::{stretch_m, two_digits, two_digits_above};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-
-/// What a tendon is paid out beyond where it is slack, m: as the firmware does.
-const SLACK_M: f64 = 1e-4;
+use leg_firmware::leg::SLACK_M;
+use leg_firmware::settings::{Limits, SERVO};
 
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let homing = &file.gains.homing;
@@ -26,19 +27,21 @@ fn check_relaxed(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let play_m = servos
         .map(|servo| decimal(servo.play_m))
         .fold(0.0, f64::max);
-    let least_m = stretch_m + play_m + SLACK_M;
+    let least_m = stretch_m + play_m + decimal(SLACK_M);
     let travel_m = decimal(file.gains.limits.relax_travel_m);
     if travel_m >= least_m {
         return Ok(());
     }
-    let place = root.place(&["control", "limits", "relax_travel_m"]);
+    let place = root.place(&[CONTROL, "limits", "relax_travel_m"]);
     let place = place.or_else(|| root.place(&["tendon", "stiffness_n_per_m"]));
     let place = place.or_else(|| root.place(&["tendon"]));
     Err(TomlError::new(
         place.unwrap_or(0..0),
         format!(
-            "a tendon that pulls with `tendon.f_max_n` stretches by {} m, and `control.limits.relax_travel_m` ({}) does not make it slack",
+            "a tendon that pulls with `tendon.f_max_n` stretches by {} m, its gear has a play of {} m (`control.servo.play_m`), and \
+             `control.limits.relax_travel_m` ({}) does not make it slack",
             plain(two_digits(stretch_m)),
+            plain(two_digits(play_m)),
             plain(travel_m)
         ),
         format!(
@@ -56,10 +59,29 @@ fn check_taut(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     if time_s * ramp > slack_m {
         return Ok(());
     }
-    let keys = ["taut_time_s", "ramp_m_per_s", "relax_travel_m"];
-    let mut places = keys.iter().map(|key| ["control", "limits", key]);
-    let place = places.find_map(|path| root.place(&path));
-    let place = place.or_else(|| root.place(&["control", "homing"]));
+    let in_limits = ["taut_time_s", "ramp_m_per_s", "relax_travel_m"].map(|key| ("limits", key));
+    let in_homing = ["release_m", "speed_m_per_s"].map(|key| ("homing", key));
+    let mut paths = in_limits.iter().chain(&in_homing);
+    let place = paths.find_map(|(section, key)| root.place(&[CONTROL, section, key]));
+    let place = place.or_else(|| root.place(&[CONTROL, SERVO, "speed_m_per_s"]));
+    let place = place.or_else(|| root.place(&[ACTUATOR]));
+    let needed_s = two_digits_above(1.2 * slack_m / ramp);
+    let times = Limits::FIELDS
+        .iter()
+        .find(|field| field.name == "taut_time_s");
+    let longest_s = times.map_or(f64::INFINITY, |field| decimal(field.range[1]));
+    let help = if needed_s <= longest_s {
+        format!(
+            "give `taut_time_s` at least {}, or a faster ramp",
+            plain(needed_s)
+        )
+    } else {
+        format!(
+            "give `ramp_m_per_s` at least {}: no more than {} s may be given",
+            plain(two_digits_above(1.2 * slack_m / longest_s)),
+            plain(longest_s)
+        )
+    };
     Err(TomlError::new(
         place.unwrap_or(0..0),
         format!(
@@ -69,9 +91,6 @@ fn check_taut(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
             plain(ramp),
             plain(slack_m)
         ),
-        format!(
-            "give `taut_time_s` at least {}, or a faster ramp",
-            plain(two_digits_above(1.2 * slack_m / ramp))
-        ),
+        help,
     ))
 }

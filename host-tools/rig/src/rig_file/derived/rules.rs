@@ -2,7 +2,7 @@
 
 use super::{Basis, HOMING_MAX_N, MotorGains, ServoLoop, TOUCH_N, two_digits_below};
 use leg_firmware::control::{FRICTION_ALLOWANCE, PULL_ALLOWANCE};
-use leg_firmware::settings::{Field, POSITION_GAIN_MAX_PER_S};
+use leg_firmware::settings::{Field, POSITION_GAIN_MAX_PER_S, Servo};
 use std::f64::consts::TAU;
 
 /// How one gain is derived.
@@ -50,6 +50,9 @@ pub(crate) const BORNE_S: f64 = 1.0;
 /// Time for which a tendon that is found taut is pulled on, s: the filter of its tension and the servo's brake.
 const STOPPED_S: f64 = 0.004;
 
+/// A usual move, rad: 15°.
+const SET_OUT_RAD: f64 = 0.262;
+
 /// Part of the phase in which a servo is not near to ringing, degrees.
 pub(crate) const MARGIN_DEG: f64 = 45.0;
 
@@ -93,28 +96,30 @@ rules! {
         |basis, _| (1.8 * basis.m_per_count).max(2e-7);
     Least motion.speed_rad_per_s = "0.9 servo.speed_m_per_s / the longest lever of a tendon, at most 0.8",
         |basis, gains| (0.9 * f64::from(gains.servo.speed_m_per_s) / basis.lever_m.max(1e-9)).min(0.8);
-    Least motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, at most 4",
-        |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
     Least homing.touch_n = "what lifts the leg, and stretches a tendon, by 2/3 of homing.release_m, at most 2",
         |basis, gains| touch_n(basis, gains).min(TOUCH_N);
     Greatest homing.settle_time_s = "2.7 × the leg's inertia / motion.joint_damping_nm_s_per_rad, at least 1.5 and at most 10",
         |basis, gains| settle_time_s(basis, gains);
+    Greatest homing.average_time_s = "a period of the leg's swing by its weight and its joint, at least 0.7 and at most 5",
+        |basis, _| (TAU * (basis.inertia_kg_m2 / basis.hanging_nm_per_rad).sqrt()).clamp(0.7, 5.0);
     Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01, what servo.current_a gives the rotor in 5 ms, and what pulls a tendon from touch_n to homing.f_max_n in 4 ms",
         |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains)).min(stopped_m_per_s(basis, gains));
+    Least motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, and what stretches a tendon by homing.speed_m_per_s as a move of 15° sets out with f_min_n and 0.9 kg, at most 4",
+        |basis, gains| acceleration_rad_per_s2(basis, gains);
     Least homing.f_max_n = "tendon.f_max_n, at most 15" exact,
         |basis, _| basis.f_max_n.min(HOMING_MAX_N);
-    Least motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
-        |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
+    Least motion.pretension_rate_n_per_s = "0.8 homing.speed_m_per_s × the least stiffness of a tendon between f_min_n and pretension_n, at most 120",
+        |basis, gains| (0.8 * f64::from(gains.homing.speed_m_per_s) * basis.least_stiffness_n_per_m).min(120.0);
     Least limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
         |_, gains| 0.5 * f64::from(gains.homing.speed_m_per_s);
-    Greatest limits.relax_travel_m = "1.5 times what a tendon stretches at f_max_n, and play_m, at least 0.005",
+    Greatest limits.relax_travel_m = "1.5 × (what a tendon stretches at f_max_n + play_m), at least 0.005",
         |basis, gains| (1.5 * (basis.stretch_m + f64::from(gains.servo.play_m))).max(5e-3);
-    Greatest limits.taut_time_s = "1.5 homing.release_m or 1.2 relax_travel_m, whichever is more, / ramp_m_per_s, at least 5 and at most 60",
+    Greatest limits.taut_time_s = "1.5 homing.release_m or 1.2 relax_travel_m, whichever is more, / ramp_m_per_s, at least 5 and at most 600",
         |_, gains| taut_time_s(gains);
     Greatest limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
         |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(two_digits_below(0.9 * basis.least_current_range_a));
-    Greatest limits.disagreement_a = "servo.current_a / 2",
-        |_, gains| 0.5 * f64::from(gains.servo.current_a);
+    Greatest limits.disagreement_a = "servo.current_a / 2, at most 0.9 × (servo.current_a - friction_a)",
+        |_, gains| disagreement_a(&gains.servo);
     Greatest limits.still_time_s = "4 times what driven_part current_a needs to turn the rotor by a count, at least 0.005",
         |basis, gains| (4.0 * first_count_s(basis, gains)).max(0.005);
     Greatest limits.reversed_time_s = "0.9 resistance_ohm inertia_kg_m2 / torque_constant_nm_per_a², at least 0.005",
@@ -203,13 +208,33 @@ fn rotor_m_per_s2(basis: &Basis, current_a: f64) -> f64 {
     acceleration * actuator.m_per_rad()
 }
 
+/// A move sets out with a jerk, by which the moment of its inertia, and of that of a payload that may hang on it, stretches its tendons at a speed: one that a motor cannot start with keeps it behind, and it
+/// drives with all that its servo gives (`drawn_rigs_with_slow_motors_work`).
+fn acceleration_rad_per_s2(basis: &Basis, gains: &MotorGains) -> f64 {
+    let lever_m = basis.lever_m.max(1e-9);
+    let rotor = rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / lever_m;
+    // Two of three tendons share the moment.
+    let stiffness_nm = 1.5 * lever_m * basis.least_stiffness_n_per_m;
+    let jerk = f64::from(gains.homing.speed_m_per_s) * stiffness_nm / basis.moved_inertia_kg_m2;
+    // A quintic over an angle D in a time T accelerates by 10/√3 D/T² at the most, and begins with a jerk of 60 D/T³.
+    let quintic = 10.0 / 3.0_f64.sqrt();
+    let stretched = (jerk * SET_OUT_RAD.sqrt() / 60.0).powf(2.0 / 3.0) * quintic;
+    rotor.min(stretched).min(4.0)
+}
+
 /// Homing pays each tendon out by a step until it is slack, and a leg that is relaxed pays it out by the travel for that: so far at most it is taken
 /// up again, before the tensions rise.
 fn taut_time_s(gains: &MotorGains) -> f64 {
     let released_m = 1.5 * f64::from(gains.homing.release_m);
     let relaxed_m = 1.2 * f64::from(gains.limits.relax_travel_m);
     let taken_up_s = released_m.max(relaxed_m) / f64::from(gains.limits.ramp_m_per_s);
-    taken_up_s.clamp(5.0, 60.0)
+    taken_up_s.clamp(5.0, 600.0)
+}
+
+/// No current of a sound motor differs by half of the most that is driven; one beyond what friction leaves of it is never seen.
+fn disagreement_a(servo: &Servo) -> f64 {
+    let most_a = f64::from(servo.current_a) - f64::from(servo.friction_a);
+    (0.5 * f64::from(servo.current_a)).min(two_digits_below(0.9 * most_a))
 }
 
 /// Time in which the least current that counts as driven turns a rotor at rest by a count, s.

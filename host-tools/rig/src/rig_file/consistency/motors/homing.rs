@@ -2,13 +2,27 @@
 
 use super::Motor;
 use crate::number::{decimal, plain};
+use crate::rig_file::consistency::cells::STEP_CODES;
 use crate::rig_file::derived::rules::{stopped_m_per_s, touch_n};
 use crate::rig_file::derived::{two_digits, two_digits_above, two_digits_below};
 use leg_firmware::control::SHOWN_PART;
-use leg_firmware::settings::CurrentOutput;
+use leg_firmware::settings::{CurrentOutput, Homing};
+
+/// What a tendon's zero may be off by half a step of its load cell before it is worth a warning, m.
+const ZERO_M: f64 = 5e-5;
+
+/// Multiple of `release_m` that the motors turn one after the other while a leg homes whose tendons have 1 mm of slack: fitted to homings with
+/// gears of 4.4 to 100 (`a_long_homing_is_told_before`).
+const HOMING_RELEASES: f64 = 8.4;
+
+/// A homing that takes longer is warned of, s.
+const LONG_S: f64 = 60.0;
 
 /// The least that `touch_n` may be, N.
-const TOUCH_MIN_N: f64 = 0.1;
+fn least_touch_n() -> f64 {
+    let touches = Homing::FIELDS.iter().find(|field| field.name == "touch_n");
+    touches.map_or(0.0, |field| decimal(field.range[0]))
+}
 
 impl Motor<'_> {
     /// A motor has to stop as its tendon becomes taut.
@@ -31,6 +45,11 @@ impl Motor<'_> {
             );
             self.warn(&keys, text);
         }
+    }
+
+    /// A motor stops as its tendon becomes taut before that pulls too hard, by its stiffness.
+    pub(super) fn check_stopped(&mut self) {
+        let homing = decimal(self.gains.homing.speed_m_per_s);
         let stopped = stopped_m_per_s(&self.basis, &self.gains);
         // What is derived is rounded to two digits.
         if homing > 1.05 * stopped {
@@ -45,6 +64,31 @@ impl Motor<'_> {
         }
     }
 
+    /// Whoever homes such a leg has to know that it has not stopped.
+    pub(super) fn check_duration(&mut self) {
+        let homing = &self.gains.homing;
+        let speed = decimal(homing.speed_m_per_s);
+        let lasts_s = HOMING_RELEASES * decimal(homing.release_m) / speed;
+        if lasts_s <= LONG_S {
+            return;
+        }
+        let text = format!(
+            "homing takes some {} s with `control.homing.speed_m_per_s` ({}), and an arm up to {} s with `control.limits.ramp_m_per_s` ({}), as the \
+             motors are slow or start slowly: less `gear_ratio`, more `lead_m` or more `control.servo.current_a` would shorten it",
+            plain(two_digits(lasts_s)),
+            plain(speed),
+            plain(two_digits(decimal(self.gains.limits.taut_time_s))),
+            plain(decimal(self.gains.limits.ramp_m_per_s))
+        );
+        let keys = [
+            "control.homing.speed_m_per_s",
+            "control.servo.speed_m_per_s",
+            "actuator.gear_ratio",
+            "actuator.lead_m",
+        ];
+        self.warn(&keys, text);
+    }
+
     /// A tendon that is found taut has lifted the leg, and has to become slack as it is paid out again.
     pub(super) fn check_touch(&mut self) {
         let homing = &self.gains.homing;
@@ -56,7 +100,7 @@ impl Motor<'_> {
         }
         let lifted_m = touch * self.basis.lift_m_per_n;
         let keys = ["control.homing.touch_n", "control.homing.release_m"];
-        let remedy = if fit < TOUCH_MIN_N {
+        let remedy = if fit < least_touch_n() {
             format!("give a longer `{}`", keys[1])
         } else {
             let fit = plain(two_digits_below(fit));
@@ -70,6 +114,28 @@ impl Motor<'_> {
             keys[1],
             plain(decimal(homing.release_m))
         );
+        self.warn(&keys, text);
+    }
+
+    /// Readings are averaged to less than a step of the converter only where their noise is no less than about half of one.
+    pub(super) fn check_cell_step(&mut self) {
+        let noise_n = self.file.plant.cell_noise_n;
+        let step_n = STEP_CODES * self.file.calibration.cell_n_per_code[self.motor];
+        let off_m = 0.5 * step_n * self.basis.lift_m_per_n;
+        if noise_n >= 0.5 * step_n || off_m <= ZERO_M {
+            return;
+        }
+        let fit_n = (2.0 * noise_n).max(2.0 * ZERO_M / self.basis.lift_m_per_n);
+        let text = format!(
+            "a step of load cell {} is {} N, which noise of {} N (`simulation.cell_noise_n`) does not average, and so little lifts the leg that homing may \
+             be off by {} m: a range in which a step is at most {} N would do",
+            self.motor + 1,
+            plain(two_digits(step_n)),
+            plain(noise_n),
+            plain(two_digits(off_m)),
+            plain(two_digits_below(fit_n))
+        );
+        let keys = ["actuator.cell_range_n", "simulation.cell_noise_n"];
         self.warn(&keys, text);
     }
 

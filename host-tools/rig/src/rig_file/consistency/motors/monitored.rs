@@ -2,26 +2,31 @@
 
 use super::Motor;
 use crate::number::{decimal, plain};
+use crate::rig_file::consistency::cells::STEP_CODES;
 use crate::rig_file::derived::{two_digits, two_digits_above, two_digits_below};
 use crate::toml_error::TomlError;
 use leg_firmware::control::LIMITED_AHEAD_M;
-use leg_firmware::supervisor::AWAY_PART;
+use leg_firmware::supervisor::{AWAY_PART, JAMMED_PART};
 use leg_model::Elasticity;
-
-/// Part of the supply at which a motor counts as driven, at most.
-const LEFT_PART: f64 = 0.95;
 
 /// Multiple of the maximum tension that a motor which runs away may pull with before it is found, more than which is warned of.
 const RUNAWAY_MULTIPLE: f64 = 2.0;
 
+/// The least that `following_m` may be by the dead band of a servo, m.
+fn least_following_m(dead_band_m: f64) -> f64 {
+    (decimal(LIMITED_AHEAD_M) / 0.9).max(1.1 * dead_band_m)
+}
+
 impl Motor<'_> {
     /// One that is jammed or counts the wrong way gets no more voltage than the supply has.
-    pub(super) fn check_driven_voltage(&self) -> Result<(), TomlError> {
+    pub(super) fn check_driven_voltage(&mut self) -> Result<(), TomlError> {
         let (servo, limits) = (&self.gains.servo, &self.gains.limits);
-        let part = decimal(limits.driven_part);
+        let (part, jammed_part) = (decimal(limits.driven_part), decimal(JAMMED_PART));
         let driven_v = part * decimal(servo.current_a) * decimal(servo.resistance_ohm);
-        let supply_v = LEFT_PART * decimal(servo.duty_max) * self.basis.actuator.supply_v;
-        if driven_v <= supply_v && part <= LEFT_PART {
+        let supply_part = jammed_part * decimal(servo.duty_max);
+        let supply_v = supply_part * self.basis.actuator.supply_v;
+        if driven_v <= supply_v && part <= jammed_part {
+            self.check_driven_at_least_supply(driven_v, driven_v / supply_part);
             return Ok(());
         }
         let keys = [
@@ -30,7 +35,7 @@ impl Motor<'_> {
             "control.servo.resistance_ohm",
             "actuator.resistance_ohm",
         ];
-        let fit = (part * supply_v / driven_v).min(LEFT_PART);
+        let fit = (part * supply_v / driven_v).min(jammed_part);
         let sentence = format!(
             "a motor counts as driven from {} V, `{}` ({}) of what `{}` ({}) needs, and `actuator.supply_v` gives it little more than {} V: that it \
              is jammed, or counts the wrong way, is not found",
@@ -48,11 +53,69 @@ impl Motor<'_> {
         self.refuse(&keys, sentence, help)
     }
 
+    /// A supply that is low, but no fault, gives less: below `least_v` such a motor does not get `driven_v`.
+    fn check_driven_at_least_supply(&mut self, driven_v: f64, least_v: f64) {
+        let supply_min_v = decimal(self.gains.limits.supply_min_v);
+        if supply_min_v >= 0.999 * least_v {
+            return;
+        }
+        let keys = ["control.limits.supply_min_v", "control.servo.current_a"];
+        let fit_v = two_digits_above(least_v);
+        let supply_v = self.basis.actuator.supply_v;
+        let remedy = if fit_v < supply_v {
+            format!("{} would do", plain(fit_v))
+        } else {
+            "a supply of more volts, or a lower `tendon.f_max_n`, would do".into()
+        };
+        let text = format!(
+            "a motor counts as driven from {} V, which a supply below {} V does not give it: that it is jammed, or counts the wrong way, is not \
+             found between that and `{}` ({}): {remedy}",
+            plain(two_digits(driven_v)),
+            plain(two_digits(least_v)),
+            keys[0],
+            plain(supply_min_v)
+        );
+        self.warn(&keys, text);
+    }
+
+    /// As homing begins, all motors start together with all that their servos give.
+    pub(super) fn check_supply_dip(&mut self) {
+        let supply_v = self.basis.actuator.supply_v;
+        let least_v = decimal(self.gains.limits.supply_min_v);
+        let servos = self.file.gains.servos.iter();
+        let powers_w = servos.map(|servo| {
+            let current_a = decimal(servo.current_a);
+            current_a * current_a * decimal(servo.resistance_ohm)
+        });
+        let drawn_a = powers_w.sum::<f64>() / least_v.max(1e-9);
+        let most_ohm = (supply_v - least_v) / drawn_a;
+        let resistance_ohm = self.file.plant.supply_resistance_ohm;
+        if resistance_ohm <= most_ohm {
+            return;
+        }
+        let keys = [
+            "simulation.supply_resistance_ohm",
+            "control.servo.current_a",
+            "actuator.supply_v",
+        ];
+        let text = format!(
+            "motors that start together draw up to {} A, and a supply with `{}` ({}) falls below `control.limits.supply_min_v` ({}): up to {} Ω, or a \
+             smaller `{}`, would do",
+            plain(two_digits(drawn_a)),
+            keys[0],
+            plain(resistance_ohm),
+            plain(least_v),
+            plain(two_digits_below(most_ohm)),
+            keys[1]
+        );
+        self.warn(&keys, text);
+    }
+
     /// How far a motor may be from where it is led.
     pub(super) fn check_following(&mut self) -> Result<(), TomlError> {
         let following_m = decimal(self.gains.limits.following_m);
         let band_m = decimal(self.gains.servo.dead_band_m);
-        let least_m = (decimal(LIMITED_AHEAD_M) / 0.9).max(1.1 * band_m);
+        let least_m = least_following_m(band_m);
         let keys = ["control.limits.following_m", "control.servo.dead_band_m"];
         let words = format!("`{}` ({})", keys[0], plain(following_m));
         if following_m < least_m {
@@ -64,6 +127,12 @@ impl Motor<'_> {
             let help = format!("give at least {}", plain(two_digits_above(least_m)));
             return self.refuse(&keys, sentence, help);
         }
+        Ok(())
+    }
+
+    /// How far a motor that runs away gets before it is found.
+    pub(super) fn check_runaway(&mut self) {
+        let following_m = decimal(self.gains.limits.following_m);
         let f_max_n = self.file.f_max_n;
         let tendons = self.file.tendons.iter();
         let stiffnesses = tendons.filter_map(|tendon| tendon.stiffness(f_max_n).ok());
@@ -71,15 +140,23 @@ impl Motor<'_> {
         let pulled_n = f64::from(AWAY_PART) * following_m * stiffness_n_per_m;
         let most_n = RUNAWAY_MULTIPLE * f_max_n;
         if pulled_n > most_n {
-            let fit = two_digits_below(following_m * most_n / pulled_n);
+            let fit_m = two_digits_below(following_m * most_n / pulled_n);
+            let servos = self.file.gains.servos.iter();
+            let bands_m = servos.map(|servo| decimal(servo.dead_band_m));
+            let remedy = if fit_m >= least_following_m(bands_m.fold(0.0, f64::max)) {
+                format!("{} would do", plain(fit_m))
+            } else {
+                "softer tendons would do, as a sound motor stays behind by more than what would"
+                    .into()
+            };
+            let key = "control.limits.following_m";
             let text = format!(
-                "{words} lets a motor that runs away pull with {} N more before it is found: {} would do",
+                "`{key}` ({}) lets a motor that runs away pull with {} N more before it is found: {remedy}",
+                plain(following_m),
                 plain(two_digits(pulled_n)),
-                plain(fit)
             );
-            self.warn(&keys[..1], text);
+            self.warn(&[key], text);
         }
-        Ok(())
     }
 
     /// A current that no servo drives is not seen to differ. Motors that differ have one limit together.
@@ -109,7 +186,7 @@ impl Motor<'_> {
         let residual_m = decimal(limits.residual_m);
         let change_m = decimal(limits.residual_change_m);
         let root_3 = 3.0_f64.sqrt();
-        let cell_n = 16.0 * self.file.calibration.cell_n_per_code[self.motor];
+        let cell_n = STEP_CODES * self.file.calibration.cell_n_per_code[self.motor];
         let tendons = self.file.tendons.iter();
         let stiffnesses = tendons.filter_map(|tendon| tendon.stiffness(self.file.f_min_n).ok());
         let stiffness_n_per_m = stiffnesses.fold(f64::INFINITY, f64::min);
