@@ -89,6 +89,12 @@ pub(crate) fn widened(field: &Field) -> Field<f64> {
     }
 }
 
+/// The range of a key among fields; not a number where there is none.
+pub(crate) fn range_of(fields: &[Field], name: &str) -> [f64; 2] {
+    let field = fields.iter().find(|field| field.name == name);
+    field.map_or([f64::NAN; 2], |field| widened(field).range)
+}
+
 /// The gains that a file gives; none where it has no such section.
 ///
 /// # Errors

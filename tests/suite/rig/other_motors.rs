@@ -334,8 +334,8 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
             "falls below `control.limits.supply_min_v` (18): up to 0.96 Ω",
         ),
         (
-            "lead_m = 4e-3\ngear_ratio = 1\nbacklash_rad = 0.05\n",
-            "throws its rotor to and fro within a play of 3.2e-5 m",
+            "lead_m = 2e-3\ngear_ratio = 2.2\nbacklash_rad = 0.08\n",
+            "throws its rotor to and fro within a play of 2.5e-5 m",
         ),
         (
             "[control.limits]\nsupply_min_v = 4\n",

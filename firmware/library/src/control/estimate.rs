@@ -100,7 +100,7 @@ impl<T: Scalar> Estimator<T> {
     /// `target_torsion`, rad, is the elastic one of a leg whose tendons are slack; taut ones show it by themselves.
     ///
     /// # Errors
-    /// A tension beyond a tendon's curve; what forward kinematics refuses of tendons that are taut.
+    /// A tension beyond a tendon's curve; what forward kinematics refuses, but for tendons that are slack and longer than the last pose makes them.
     #[inline(always)]
     pub fn update(
         &mut self,
@@ -132,15 +132,7 @@ impl<T: Scalar> Estimator<T> {
             forward_kinematics(geometry, &lengths, &self.direction)
         };
         let found = match found {
-            // Tendons that are longer than any pose makes them show none, where their anchors are narrow: the last one stays until they pull.
-            Err(_) if slack => {
-                return Ok(Estimate {
-                    direction: self.direction,
-                    residual_m: T::zero(),
-                    lengths_m: lengths.into(),
-                    length_error: None,
-                });
-            }
+            Err(error) if slack => return self.stay(mechanism, &lengths, error),
             found => found?,
         };
         self.direction = found.direction;
@@ -169,6 +161,33 @@ impl<T: Scalar> Estimator<T> {
             residual_m: found.residual_m,
             lengths_m: lengths.into(),
             length_error,
+        })
+    }
+
+    /// The last pose, with what it leaves over, where the tendons are longer than it makes them: with narrow anchors such lengths show none, until all pull.
+    ///
+    /// # Errors
+    /// That of forward kinematics, where they are not.
+    #[cold]
+    #[inline(never)]
+    fn stay(
+        &self,
+        mechanism: &Mechanism<T>,
+        lengths: &SVector<T, 3>,
+        error: Error,
+    ) -> Result<Estimate<T>, Error> {
+        let mut twisted = None;
+        let geometry = mechanism.geometry(&self.direction, self.torsion, &mut twisted);
+        let kinematics = inverse_kinematics(geometry, &self.direction)?;
+        let excess = lengths - kinematics.lengths;
+        if !(excess.sum() > T::zero()) {
+            return Err(error);
+        }
+        Ok(Estimate {
+            direction: self.direction,
+            residual_m: excess.dot(&excess).sqrt(),
+            lengths_m: (*lengths).into(),
+            length_error: None,
         })
     }
 

@@ -194,7 +194,7 @@ impl<T: Scalar> HomingSequence<T> {
         let shown = measured.tensions_n.iter().zip(&measured.currents_a);
         for (((number, (steady, hauling)), limit), (&tension, &current)) in tendons.zip(shown) {
             let shows = !(steady.step(tension).abs() <= self.slack_n);
-            let hauls = hauling.update(limit.exceeded(current));
+            let hauls = hauling.update(limit.update(current));
             if hauls || (shows && number != taut) {
                 found = Some(number);
             }

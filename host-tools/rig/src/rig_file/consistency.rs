@@ -7,14 +7,14 @@ mod travels;
 use super::RigFile;
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::calibration::CALIBRATION;
-use crate::gains::{CONTROL, widened};
+use crate::gains::{CONTROL, range_of};
 use crate::motor_sections::{MOTORS, motor_section};
 use crate::number::{decimal, plain};
 use crate::plant_settings::SIMULATION;
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::sensors::CURRENT_ZERO_PART;
-use leg_firmware::settings::{AxisCalibration, Field, Servo};
+use leg_firmware::settings::{AxisCalibration, Servo};
 use std::ops::Range;
 
 /// Something doubtful at a place of the file.
@@ -50,10 +50,6 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
 
 /// What several values of `[actuator]` make up together.
 fn check_actuator(actuator: &Actuator, motor: usize, root: &Section<'_>) -> Result<(), TomlError> {
-    let range = |fields: &[Field], name: &str| {
-        let field = fields.iter().find(|field| field.name == name);
-        field.map_or([f64::NAN; 2], |field| widened(field).range)
-    };
     let check_range = |what: &str, value: f64, [low, high]: [f64; 2], keys: &str| {
         if (low..=high).contains(&value) {
             return Ok(());
@@ -68,13 +64,13 @@ fn check_actuator(actuator: &Actuator, motor: usize, root: &Section<'_>) -> Resu
     check_range(
         "the travel of a tendon in one encoder count, m,",
         actuator.m_per_count(),
-        range(AxisCalibration::FIELDS, "m_per_count"),
+        range_of(AxisCalibration::FIELDS, "m_per_count"),
         "`lead_m`, `gear_ratio` and `counts_per_turn`",
     )?;
     check_range(
         "the voltage that a motor induces by the speed of its tendon, V·s/m,",
         actuator.back_emf_v_s_per_m(),
-        range(Servo::FIELDS, "back_emf_v_s_per_m"),
+        range_of(Servo::FIELDS, "back_emf_v_s_per_m"),
         "`torque_constant_nm_per_a`, `gear_ratio` and `lead_m`",
     )?;
     check_range(

@@ -34,6 +34,47 @@ fn a_pose_is_found_in_one_cycle() {
     }
 }
 
+/// Tendons that are too long for any pose of a leg with narrow anchors leave it where it was; ones that are too short, or no lengths, are an error.
+#[test]
+fn a_pose_stays_only_while_slack_tendons_are_longer() {
+    let mut settings = Settings::table_1().unwrap();
+    for anchors_m in [
+        &mut settings.rig.base_anchors_m,
+        &mut settings.rig.leg_anchors_m,
+    ] {
+        *anchors_m = anchors_m.map(|anchor| anchor.map(|m| 0.25 * m));
+    }
+    let mechanism = Mechanism::<f64>::new(&settings).unwrap();
+    let hanging = Direction::straight_down();
+    let lengths = inverse_kinematics(mechanism.rig.geometry(), &hanging)
+        .unwrap()
+        .lengths;
+    let update = |longer_m: [f64; 3], load_estimation| {
+        let unstretched_m = [0, 1, 2].map(|i| lengths[i] + longer_m[i]);
+        Estimator::new(&settings).update(
+            &mechanism,
+            &unstretched_m,
+            &[0.0; 3],
+            0.0,
+            load_estimation,
+        )
+    };
+    // As sensors with noise show it.
+    let longer_m = [6e-3, 6.01e-3, 5.98e-3];
+    let kept = update(longer_m, LoadEstimation::Slack).unwrap();
+    assert_eq!(kept.direction.vector(), hanging.vector());
+    let leaves_m = longer_m.map(|m| m * m).iter().sum::<f64>().sqrt();
+    assert!(
+        (kept.residual_m - leaves_m).abs() < 1e-12,
+        "{}",
+        kept.residual_m
+    );
+    assert!(update(longer_m, LoadEstimation::Filtered).is_err());
+    for no_m in [[f64::NAN, 6e-3, 6e-3], [-0.05, 6e-3, 6e-3]] {
+        assert!(update(no_m, LoadEstimation::Slack).is_err(), "{no_m:?}");
+    }
+}
+
 /// A push across the way to which a leg on a ball joint leans twists it: tensions without a moment about the leg.
 #[test]
 fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {

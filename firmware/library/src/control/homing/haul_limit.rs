@@ -29,10 +29,10 @@ impl<T: Scalar> HaulLimit<T> {
         }
     }
 
-    /// Whether a current, A, is too much, and has the direction of the last one: a motor that starts and brakes at a tendon that the swinging leg leaves
-    /// slack again turns about, and one that hauls does not.
+    /// One tick: whether a current, A, is too much, and has the direction of the last one. A motor that starts and brakes at a tendon that the swinging leg
+    /// leaves slack again turns about, and one that hauls does not; one that rings there pulls no tendon on.
     #[inline(always)]
-    pub fn exceeded(&mut self, current_a: T) -> bool {
+    pub fn update(&mut self, current_a: T) -> bool {
         let inwards = current_a > T::zero();
         let turned = core::mem::replace(&mut self.inwards, inwards) != inwards;
         !(current_a.abs() <= self.most_a) && !turned
@@ -59,11 +59,11 @@ mod tests {
             };
             limit.lower(friction_a);
             for sign in [1.0_f64, -1.0] {
-                assert!(!limit.exceeded(sign * (expected_a + 1e-6)), "turned");
-                assert!(!limit.exceeded(sign * (expected_a - 1e-6)));
-                assert!(limit.exceeded(sign * (expected_a + 1e-6)));
+                assert!(!limit.update(sign * (expected_a + 1e-6)), "turned");
+                assert!(!limit.update(sign * (expected_a - 1e-6)));
+                assert!(limit.update(sign * (expected_a + 1e-6)));
             }
-            assert!(limit.exceeded(f64::NAN));
+            assert!(limit.update(f64::NAN));
         }
     }
 }

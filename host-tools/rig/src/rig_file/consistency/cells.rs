@@ -81,9 +81,9 @@ pub(super) fn check(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<
     }
     if step_n > coarsest_n {
         return refused(
-            &[&touch],
+            &[&touch, &[ACTUATOR], &["mass", "leg_kg"]],
             format!(
-                "a step of {cell} is {} N, too coarse for `control.homing.touch_n` ({})",
+                "a step of {cell} is {} N, too coarse for `control.homing.touch_n` ({}), which is given or follows from the leg's weight",
                 plain(two_digits(step_n)),
                 plain(touch_n)
             ),

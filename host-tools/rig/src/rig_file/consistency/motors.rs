@@ -6,8 +6,11 @@ mod rest;
 
 use super::{RigFile, Warning, place_of};
 use crate::actuator::ACTUATOR;
+use crate::gains::range_of;
 use crate::number::{decimal, plain};
-use crate::rig_file::derived::rules::{BORNE_S, MARGIN_DEG, pulling_a, reachable_m_per_s};
+use crate::rig_file::derived::rules::{
+    BORNE_S, MARGIN_DEG, homed_m_per_s, pulling_a, reachable_m_per_s,
+};
 use crate::rig_file::derived::{
     Basis, MotorGains, ServoLoop, two_digits, two_digits_above, two_digits_below,
 };
@@ -77,14 +80,18 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
         checked.check_bandwidth()?;
         warnings.extend(checked.warnings);
     }
-    let [first, ..] = bases;
-    let mut together = Motor::new(file, root, 0, first, String::new());
+    // The one that homes the slowest.
+    let homes = |motor: usize| homed_m_per_s(&bases[motor], &MotorGains::new(&file.gains, motor));
+    let slowest = (0..bases.len()).min_by(|a, b| homes(*a).total_cmp(&homes(*b)));
+    let motor = slowest.unwrap_or_default();
+    let mut together = Motor::new(file, root, motor, bases[motor], String::new());
     together.check_disagreement()?;
     together.check_touch();
     together.check_stopped();
     together.check_duration();
     together.check_runaway();
     together.check_supply_dip();
+    together.check_low_supply();
     warnings.extend(together.warnings);
     Ok(warnings)
 }
@@ -283,10 +290,7 @@ impl<'a> Motor<'a> {
     /// A turn that tendons of a speed, m/s, follow, or, where that is slower than any that may be given, a speed that follows the slowest.
     fn speed_remedy(&self, speed: f64) -> String {
         let fit = two_digits_below(0.9 * speed / self.basis.lever_m);
-        let turns = Motion::FIELDS
-            .iter()
-            .find(|field| field.name == "speed_rad_per_s");
-        let slowest = turns.map_or(0.0, |field| decimal(field.range[0]));
+        let [slowest, _] = range_of(Motion::FIELDS, "speed_rad_per_s");
         if fit >= slowest {
             format!("give at most {}", plain(fit))
         } else {

@@ -2,7 +2,7 @@
 
 use super::{RigFile, check_below};
 use crate::actuator::ACTUATOR;
-use crate::gains::CONTROL;
+use crate::gains::{CONTROL, range_of};
 use crate::number::{decimal, plain};
 use crate::rig_file::derived::{stretch_m, two_digits, two_digits_above};
 use crate::toml_error::TomlError;
@@ -66,10 +66,7 @@ fn check_taut(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let place = place.or_else(|| root.place(&[CONTROL, SERVO, "speed_m_per_s"]));
     let place = place.or_else(|| root.place(&[ACTUATOR]));
     let needed_s = two_digits_above(1.2 * slack_m / ramp);
-    let times = Limits::FIELDS
-        .iter()
-        .find(|field| field.name == "taut_time_s");
-    let longest_s = times.map_or(f64::INFINITY, |field| decimal(field.range[1]));
+    let [_, longest_s] = range_of(Limits::FIELDS, "taut_time_s");
     let help = if needed_s <= longest_s {
         format!(
             "give `taut_time_s` at least {}, or a faster ramp",

@@ -103,7 +103,7 @@ rules! {
     Greatest homing.average_time_s = "a period of the leg's swing by its weight and its joint, at least 0.7 and at most 5",
         |basis, _| (TAU * (basis.inertia_kg_m2 / basis.hanging_nm_per_rad).sqrt()).clamp(0.7, 5.0);
     Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01, what servo.current_a gives the rotor in 5 ms, and what pulls a tendon from touch_n to homing.f_max_n in 4 ms",
-        |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains)).min(stopped_m_per_s(basis, gains));
+        |basis, gains| homed_m_per_s(basis, gains).min(0.01).min(stopped_m_per_s(basis, gains));
     Least motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, and what stretches a tendon by homing.speed_m_per_s as a move of 15° sets out with f_min_n and 0.9 kg, at most 4",
         |basis, gains| acceleration_rad_per_s2(basis, gains);
     Least homing.f_max_n = "tendon.f_max_n, at most 15" exact,
@@ -178,6 +178,12 @@ pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
 fn started_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
     let free_a = f64::from(gains.servo.current_a) - f64::from(gains.servo.friction_a);
     5e-3 * rotor_m_per_s2(basis, free_a)
+}
+
+/// The speed with which a motor homes by what it can do itself, m/s.
+pub(crate) fn homed_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
+    let third = f64::from(gains.servo.speed_m_per_s) / 3.0;
+    third.min(started_m_per_s(basis, gains))
 }
 
 /// The tension of a tendon that has lifted the leg by so much that paying it out by `release_m` makes it slack again, with half as much to spare, N. More, and

@@ -20,10 +20,16 @@ pub(super) fn warning(file: &RigFile, root: &Section<'_>) -> Option<Warning> {
     } else {
         ("lowered", two_digits_below(highest_n))
     };
+    let kept = |deg: f64| {
+        let range_n = pretensions_n(file, deg);
+        range_n.is_some_and(|[low_n, high_n]| (low_n..=high_n).contains(&pretension_n))
+    };
     let remedy = if (lowest_n..=highest_n).contains(&fit_n) {
         format!("{} would do", plain(fit_n))
+    } else if let Some(deg) = whole_degrees(file).find(|deg| kept(*deg)) {
+        format!("a `tilt_deg` of {} would do", plain(deg))
     } else {
-        "a smaller `tilt_deg` would do".into()
+        "see the units of `[mass]` and `[geometry]`".into()
     };
     Some(Warning {
         span: root.place(&["tendon", "pretension_n"]).unwrap_or(0..0),
@@ -55,12 +61,13 @@ fn pretensions_n(file: &RigFile, tilt_deg: f64) -> Option<[f64; 2]> {
     Some(range_n)
 }
 
+/// Less tilts, the greatest first.
+fn whole_degrees(file: &RigFile) -> impl Iterator<Item = f64> {
+    (1..file.tilt_deg.ceil() as u32).rev().map(f64::from)
+}
+
 fn tilt_warning(file: &RigFile, root: &Section<'_>) -> Warning {
-    let whole_deg = file.tilt_deg.ceil() as u32;
-    let fit_deg = (1..whole_deg)
-        .rev()
-        .map(f64::from)
-        .find(|deg| pretensions_n(file, *deg).is_some());
+    let fit_deg = whole_degrees(file).find(|deg| pretensions_n(file, *deg).is_some());
     let remedy = fit_deg.map_or_else(
         || "see the units of `[mass]` and `[geometry]`".into(),
         |deg| format!("{} would do", plain(deg)),

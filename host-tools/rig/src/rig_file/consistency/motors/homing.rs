@@ -1,9 +1,10 @@
 //! Whether the motors can home the leg as fast as the settings ask.
 
 use super::Motor;
+use crate::gains::range_of;
 use crate::number::{decimal, plain};
 use crate::rig_file::consistency::cells::STEP_CODES;
-use crate::rig_file::derived::rules::{stopped_m_per_s, touch_n};
+use crate::rig_file::derived::rules::{homed_m_per_s, stopped_m_per_s, touch_n};
 use crate::rig_file::derived::{two_digits, two_digits_above, two_digits_below};
 use leg_firmware::control::SHOWN_PART;
 use leg_firmware::settings::{CurrentOutput, Homing};
@@ -11,18 +12,12 @@ use leg_firmware::settings::{CurrentOutput, Homing};
 /// What a tendon's zero may be off by half a step of its load cell before it is worth a warning, m.
 const ZERO_M: f64 = 5e-5;
 
-/// Multiple of `release_m` that the motors turn one after the other while a leg homes whose tendons have 1 mm of slack: fitted to homings with
-/// gears of 4.4 to 100 (`a_long_homing_is_told_before`).
+/// Multiple of `release_m` that the motors turn one after the other while a leg homes whose tendons have 1 mm of slack: that of homings with
+/// gears of 4.4 to 100. `a_long_homing_is_told_before` holds it.
 const HOMING_RELEASES: f64 = 8.4;
 
 /// A homing that takes longer is warned of, s.
 const LONG_S: f64 = 60.0;
-
-/// The least that `touch_n` may be, N.
-fn least_touch_n() -> f64 {
-    let touches = Homing::FIELDS.iter().find(|field| field.name == "touch_n");
-    touches.map_or(0.0, |field| decimal(field.range[0]))
-}
 
 impl Motor<'_> {
     /// A motor has to stop as its tendon becomes taut.
@@ -68,13 +63,25 @@ impl Motor<'_> {
     pub(super) fn check_duration(&mut self) {
         let homing = &self.gains.homing;
         let speed = decimal(homing.speed_m_per_s);
-        let lasts_s = HOMING_RELEASES * decimal(homing.release_m) / speed;
+        let rests_s = 3.0 * (decimal(homing.settle_time_s) + decimal(homing.average_time_s));
+        let lasts_s = HOMING_RELEASES * decimal(homing.release_m) / speed + rests_s;
         if lasts_s <= LONG_S {
             return;
         }
+        let given = |key: &str| self.file.given_gains.has("homing", self.motor, key);
+        let stiff =
+            stopped_m_per_s(&self.basis, &self.gains) < homed_m_per_s(&self.basis, &self.gains);
+        let remedy = if given("speed_m_per_s") || given("release_m") {
+            "more `speed_m_per_s`, or less `release_m`, would shorten it"
+        } else if 2.0 * rests_s > lasts_s {
+            "`settle_time_s` and `average_time_s` follow from how long the leg swings"
+        } else if stiff {
+            "softer tendons, or a higher `f_max_n` of homing, would shorten it"
+        } else {
+            "less `gear_ratio`, more `lead_m` or more `control.servo.current_a` would shorten it"
+        };
         let text = format!(
-            "homing takes some {} s with `control.homing.speed_m_per_s` ({}), and an arm up to {} s with `control.limits.ramp_m_per_s` ({}), as the \
-             motors are slow or start slowly: less `gear_ratio`, more `lead_m` or more `control.servo.current_a` would shorten it",
+            "homing takes some {} s with `control.homing.speed_m_per_s` ({}), and an arm up to {} s with `control.limits.ramp_m_per_s` ({}): {remedy}",
             plain(two_digits(lasts_s)),
             plain(speed),
             plain(two_digits(decimal(self.gains.limits.taut_time_s))),
@@ -82,6 +89,7 @@ impl Motor<'_> {
         );
         let keys = [
             "control.homing.speed_m_per_s",
+            "control.homing.release_m",
             "control.servo.speed_m_per_s",
             "actuator.gear_ratio",
             "actuator.lead_m",
@@ -100,7 +108,8 @@ impl Motor<'_> {
         }
         let lifted_m = touch * self.basis.lift_m_per_n;
         let keys = ["control.homing.touch_n", "control.homing.release_m"];
-        let remedy = if fit < least_touch_n() {
+        let [least_n, _] = range_of(Homing::FIELDS, "touch_n");
+        let remedy = if fit < least_n {
             format!("give a longer `{}`", keys[1])
         } else {
             let fit = plain(two_digits_below(fit));
@@ -127,15 +136,18 @@ impl Motor<'_> {
         }
         let fit_n = (2.0 * noise_n).max(2.0 * ZERO_M / self.basis.lift_m_per_n);
         let text = format!(
-            "a step of load cell {} is {} N, which noise of {} N (`simulation.cell_noise_n`) does not average, and so little lifts the leg that homing may \
+            "a step of its load cell is {} N, which noise of {} N (`simulation.cell_noise_n`) does not average, and so little lifts the leg that homing may \
              be off by {} m: a range in which a step is at most {} N would do",
-            self.motor + 1,
             plain(two_digits(step_n)),
             plain(noise_n),
             plain(two_digits(off_m)),
             plain(two_digits_below(fit_n))
         );
-        let keys = ["actuator.cell_range_n", "simulation.cell_noise_n"];
+        let keys = [
+            "calibration.cell_n_per_code",
+            "actuator.cell_range_n",
+            "simulation.cell_noise_n",
+        ];
         self.warn(&keys, text);
     }
 

@@ -26,7 +26,6 @@ impl Motor<'_> {
         let supply_part = jammed_part * decimal(servo.duty_max);
         let supply_v = supply_part * self.basis.actuator.supply_v;
         if driven_v <= supply_v && part <= jammed_part {
-            self.check_driven_at_least_supply(driven_v, driven_v / supply_part);
             return Ok(());
         }
         let keys = [
@@ -53,16 +52,25 @@ impl Motor<'_> {
         self.refuse(&keys, sentence, help)
     }
 
-    /// A supply that is low, but no fault, gives less: below `least_v` such a motor does not get `driven_v`.
-    fn check_driven_at_least_supply(&mut self, driven_v: f64, least_v: f64) {
-        let supply_min_v = decimal(self.gains.limits.supply_min_v);
+    /// A supply that is low, but no fault, gives less than what such a motor is found by.
+    pub(super) fn check_low_supply(&mut self) {
+        let limits = &self.gains.limits;
+        let (supply_min_v, part) = (decimal(limits.supply_min_v), decimal(limits.driven_part));
+        let servos = self.file.gains.servos.iter();
+        let driven = servos.map(|servo| {
+            let driven_v = part * decimal(servo.current_a) * decimal(servo.resistance_ohm);
+            let least_v = driven_v / (decimal(JAMMED_PART) * decimal(servo.duty_max));
+            [driven_v, least_v]
+        });
+        let highest = driven.max_by(|a, b| a[1].total_cmp(&b[1]));
+        let [driven_v, least_v] = highest.unwrap_or_default();
         if supply_min_v >= 0.999 * least_v {
             return;
         }
         let keys = ["control.limits.supply_min_v", "control.servo.current_a"];
         let fit_v = two_digits_above(least_v);
-        let supply_v = self.basis.actuator.supply_v;
-        let remedy = if fit_v < supply_v {
+        // Nearer to the supply, any sag would be a fault.
+        let remedy = if fit_v < 0.9 * self.basis.actuator.supply_v {
             format!("{} would do", plain(fit_v))
         } else {
             "a supply of more volts, or a lower `tendon.f_max_n`, would do".into()
@@ -83,11 +91,14 @@ impl Motor<'_> {
         let supply_v = self.basis.actuator.supply_v;
         let least_v = decimal(self.gains.limits.supply_min_v);
         let servos = self.file.gains.servos.iter();
-        let powers_w = servos.map(|servo| {
-            let current_a = decimal(servo.current_a);
-            current_a * current_a * decimal(servo.resistance_ohm)
+        // As much by their windings as the servo and the supply give.
+        let drawn = servos.map(|servo| {
+            let resistance_ohm = decimal(servo.resistance_ohm);
+            let most_v = decimal(servo.current_a) * resistance_ohm;
+            let motor_v = most_v.min(decimal(servo.duty_max) * least_v);
+            motor_v * motor_v / (resistance_ohm * least_v.max(1e-9))
         });
-        let drawn_a = powers_w.sum::<f64>() / least_v.max(1e-9);
+        let drawn_a = drawn.sum::<f64>();
         let most_ohm = (supply_v - least_v) / drawn_a;
         let resistance_ohm = self.file.plant.supply_resistance_ohm;
         if resistance_ohm <= most_ohm {

@@ -11,7 +11,7 @@ use leg_model::Elasticity;
 const TIP_M: f64 = 5e-5;
 
 /// The speed at which a tendon may throw its rotor through the play of its gear, m/s. Drawn rigs that swung by their motors alone had 1.2 mm/s and more, and some with
-/// up to 2.6 mm/s came to rest (`rigs_that_are_accepted_work`).
+/// up to 2.6 mm/s came to rest; half of the least, as they were few.
 const THROWN_M_PER_S: f64 = 6e-4;
 
 impl Motor<'_> {
@@ -94,7 +94,7 @@ impl Motor<'_> {
         ];
         let text = format!(
             "through `{}` ({}) and `{}` ({}) a tendon throws its rotor to and fro within a play of {} m, and the motor may not come to rest: a \
-             `gear_ratio` of {}, or a `{}` of {}, would do",
+             `gear_ratio` of {}, or an `{}` of {}, would do",
             keys[0],
             plain(actuator.gear_ratio),
             keys[2],
