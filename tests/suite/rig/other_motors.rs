@@ -331,7 +331,7 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
         ("gear_ratio = 40\n", "homing takes some 1"),
         (
             "[simulation]\nsupply_resistance_ohm = 1\n",
-            "falls below `control.limits.supply_min_v` (18): up to 0.96 Ω",
+            "falls as low as `control.limits.supply_min_v` (18): up to 0.86 Ω",
         ),
         (
             "lead_m = 2e-3\ngear_ratio = 2.2\nbacklash_rad = 0.08\n",

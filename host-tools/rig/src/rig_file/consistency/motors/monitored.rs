@@ -91,15 +91,16 @@ impl Motor<'_> {
         let supply_v = self.basis.actuator.supply_v;
         let least_v = decimal(self.gains.limits.supply_min_v);
         let servos = self.file.gains.servos.iter();
-        // As much by their windings as the servo and the supply give.
+        // As much by their windings as the servo and the supply give; 5 % above the limit, for what inductance and speed change.
+        let low_v = 1.05 * least_v;
         let drawn = servos.map(|servo| {
             let resistance_ohm = decimal(servo.resistance_ohm);
             let most_v = decimal(servo.current_a) * resistance_ohm;
-            let motor_v = most_v.min(decimal(servo.duty_max) * least_v);
-            motor_v * motor_v / (resistance_ohm * least_v.max(1e-9))
+            let motor_v = most_v.min(decimal(servo.duty_max) * low_v);
+            motor_v * motor_v / (resistance_ohm * low_v.max(1e-9))
         });
         let drawn_a = drawn.sum::<f64>();
-        let most_ohm = (supply_v - least_v) / drawn_a;
+        let most_ohm = (supply_v - low_v) / drawn_a;
         let resistance_ohm = self.file.plant.supply_resistance_ohm;
         if resistance_ohm <= most_ohm {
             return;
@@ -110,7 +111,7 @@ impl Motor<'_> {
             "actuator.supply_v",
         ];
         let text = format!(
-            "motors that start together draw up to {} A, and a supply with `{}` ({}) falls below `control.limits.supply_min_v` ({}): up to {} Ω, or a \
+            "motors that start together draw up to {} A, and a supply with `{}` ({}) falls as low as `control.limits.supply_min_v` ({}): up to {} Ω, or a \
              smaller `{}`, would do",
             plain(two_digits(drawn_a)),
             keys[0],
