@@ -100,7 +100,7 @@ impl<T: Scalar> Estimator<T> {
     /// `target_torsion`, rad, is the elastic one of a leg whose tendons are slack; taut ones show it by themselves.
     ///
     /// # Errors
-    /// A tension beyond a tendon's curve; what forward kinematics refuses, but for tendons that are slack and longer than the last pose makes them.
+    /// A tension beyond a tendon's curve; what forward kinematics refuses, but for slack tendons that show no pose.
     #[inline(always)]
     pub fn update(
         &mut self,
@@ -132,7 +132,16 @@ impl<T: Scalar> Estimator<T> {
             forward_kinematics(geometry, &lengths, &self.direction)
         };
         let found = match found {
-            Err(error) if slack => return self.stay(mechanism, &lengths, error),
+            // Tendons that are longer than any pose makes them show none, where their anchors are narrow: the last one stays until they pull, and nothing is
+            // compared with it.
+            Err(Error::NotConverged | Error::Singular) if slack => {
+                return Ok(Estimate {
+                    direction: self.direction,
+                    residual_m: T::zero(),
+                    lengths_m: lengths.into(),
+                    length_error: None,
+                });
+            }
             found => found?,
         };
         self.direction = found.direction;
@@ -161,33 +170,6 @@ impl<T: Scalar> Estimator<T> {
             residual_m: found.residual_m,
             lengths_m: lengths.into(),
             length_error,
-        })
-    }
-
-    /// The last pose, with what it leaves over, where the tendons are longer than it makes them: with narrow anchors such lengths show none, until all pull.
-    ///
-    /// # Errors
-    /// That of forward kinematics, where they are not.
-    #[cold]
-    #[inline(never)]
-    fn stay(
-        &self,
-        mechanism: &Mechanism<T>,
-        lengths: &SVector<T, 3>,
-        error: Error,
-    ) -> Result<Estimate<T>, Error> {
-        let mut twisted = None;
-        let geometry = mechanism.geometry(&self.direction, self.torsion, &mut twisted);
-        let kinematics = inverse_kinematics(geometry, &self.direction)?;
-        let excess = lengths - kinematics.lengths;
-        if !(excess.sum() > T::zero()) {
-            return Err(error);
-        }
-        Ok(Estimate {
-            direction: self.direction,
-            residual_m: excess.dot(&excess).sqrt(),
-            lengths_m: (*lengths).into(),
-            length_error: None,
         })
     }
 

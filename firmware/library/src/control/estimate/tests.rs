@@ -34,9 +34,9 @@ fn a_pose_is_found_in_one_cycle() {
     }
 }
 
-/// Tendons that are too long for any pose of a leg with narrow anchors leave it where it was; ones that are too short, or no lengths, are an error.
+/// Tendons that are too long for any pose of a leg with narrow anchors leave it where it was; ones that are taut, and no lengths, are an error.
 #[test]
-fn a_pose_stays_only_while_slack_tendons_are_longer() {
+fn a_pose_stays_while_slack_tendons_show_none() {
     let mut settings = Settings::table_1().unwrap();
     for anchors_m in [
         &mut settings.rig.base_anchors_m,
@@ -63,12 +63,6 @@ fn a_pose_stays_only_while_slack_tendons_are_longer() {
     let longer_m = [6e-3, 6.01e-3, 5.98e-3];
     let kept = update(longer_m, LoadEstimation::Slack).unwrap();
     assert_eq!(kept.direction.vector(), hanging.vector());
-    let leaves_m = longer_m.map(|m| m * m).iter().sum::<f64>().sqrt();
-    assert!(
-        (kept.residual_m - leaves_m).abs() < 1e-12,
-        "{}",
-        kept.residual_m
-    );
     assert!(update(longer_m, LoadEstimation::Filtered).is_err());
     for no_m in [[f64::NAN, 6e-3, 6e-3], [-0.05, 6e-3, 6e-3]] {
         assert!(update(no_m, LoadEstimation::Slack).is_err(), "{no_m:?}");
