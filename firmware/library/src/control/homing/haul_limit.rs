@@ -30,7 +30,7 @@ impl<T: Scalar> HaulLimit<T> {
     }
 
     /// One tick: whether a current, A, is too much, and has the direction of the last one. A motor that starts and brakes at a tendon that the swinging leg
-    /// leaves slack again turns about, and one that hauls does not; one that rings there pulls no tendon on.
+    /// leaves slack again turns about, and one that hauls does not. One that rings there is not found by this.
     #[inline(always)]
     pub fn update(&mut self, current_a: T) -> bool {
         let inwards = current_a > T::zero();
