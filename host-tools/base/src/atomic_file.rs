@@ -8,7 +8,7 @@ pub use staging::StagingDirectory;
 
 use std::ffi::OsStr;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 /// Makes the directory of `path`, lets `write` make a new file beside it whose name ends alike, moves that to `path`, and
@@ -21,12 +21,7 @@ pub fn replace<T, E: From<io::Error>>(
     write: impl FnOnce(&Path) -> Result<T, E>,
 ) -> Result<T, E> {
     require_file(path)?;
-    // A link stays one.
-    let linked = path
-        .is_symlink()
-        .then(|| path.canonicalize().ok())
-        .flatten();
-    let path = linked.as_deref().unwrap_or(path);
+    let path = &linked(path);
     let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else {
         return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
     };
@@ -35,6 +30,15 @@ pub fn replace<T, E: From<io::Error>>(
     let written = write(new.path())?;
     new.persist(path).map_err(|error| error.error)?;
     Ok(written)
+}
+
+/// The file that a link leads to, which stays a link; the path itself where it is none, or leads nowhere.
+fn linked(path: &Path) -> PathBuf {
+    let file = path
+        .is_symlink()
+        .then(|| path.canonicalize().ok())
+        .flatten();
+    file.unwrap_or_else(|| path.into())
 }
 
 /// Refuses what is there and is no file: a directory, or a device, which a file would replace.

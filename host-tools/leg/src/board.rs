@@ -105,7 +105,7 @@ pub(crate) fn build_image(image: FirmwareImage) -> Result<PathBuf, Failure> {
     spinner.finish_and_clear();
     built.map_err(|error| match error {
         ImageError::Cancelled => Failure::failed(
-            "ended by Ctrl-C while the firmware was being built",
+            "ended by Ctrl-C or a signal while the firmware was being built",
             "nothing was begun: command again",
         ),
         error => Failure::from_error(error),

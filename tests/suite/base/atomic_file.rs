@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_base::atomic_file::{PartFile, StagingDirectory, replace};
-use std::io;
+use std::io::{self, Write as _};
 
 #[test]
 fn a_failed_write_leaves_the_old_file_and_nothing_else() {
@@ -43,6 +43,13 @@ fn a_device_is_no_place_for_a_file_and_a_link_stays_one() {
     replace(&link, |new| std::fs::write(new, "new")).unwrap();
     assert!(link.is_symlink());
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
+    let (part, mut written) = PartFile::create(&link).unwrap();
+    let unfinished = PartFile::unfinished(&link).unwrap();
+    assert_eq!(unfinished.file_name().unwrap(), "file.part");
+    written.write_all(b"newer").unwrap();
+    part.commit().unwrap();
+    assert!(link.is_symlink());
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), "newer");
 }
 
 #[test]

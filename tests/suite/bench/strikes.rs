@@ -290,6 +290,13 @@ fn a_held_leg_is_not_paid_out_by_a_cell_that_drifted() {
     require_within(281_129, &[(4615, "cell_drifting", 1.0)]);
 }
 
+/// A strike that failed once, at 167.5 N: an encoder that counts the other way had its motor drive on while the leg, at rest near its maximum tension, was
+/// braked.
+#[test]
+fn a_motor_whose_current_is_in_doubt_is_not_braked_at_rest() {
+    require_within(291_128, &[(6264, "encoder_reversed", 1.0)]);
+}
+
 /// The nearest to their bars that are known of one seed.
 #[test]
 fn what_is_nearest_to_its_bar_keeps_it() {

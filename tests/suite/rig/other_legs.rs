@@ -38,14 +38,17 @@ pub fn with_stiffness(text: &str, n_per_m: f64) -> String {
     format!("{mechanism}[workspace]{workspace}")
 }
 
-/// A leg that was homed just now.
-fn homed(rig: &RigFile) -> Stand {
-    let mut stand = Stand::new(rig, &rig.plant, Start::Slack { slack_mm: 2.0 }, 1).unwrap();
-    stand.wait(0.2).unwrap();
+/// When a leg begins to home, s.
+pub const HOMES_S: f64 = 0.2;
+
+/// A leg that was homed just now, from so much slack.
+pub fn homed(rig: &RigFile, slack_mm: f64) -> Stand {
+    let mut stand = Stand::new(rig, &rig.plant, Start::Slack { slack_mm }, 1).unwrap();
+    stand.wait(HOMES_S).unwrap();
     stand.command(&Command::Home).unwrap();
     stand.wait(0.1).unwrap();
     stand
-        .tick_until(90.0, "active", |stand| stand.state() == State::Active)
+        .tick_until(300.0, "active", |stand| stand.state() == State::Active)
         .unwrap();
     assert!(!stand.faults().any(), "{:?}", stand.faults());
     stand
@@ -53,7 +56,7 @@ fn homed(rig: &RigFile) -> Stand {
 
 /// Homes a leg, and gives the most that a tendon's zero is off, mm.
 fn zero_off_mm(rig: &RigFile) -> f64 {
-    let mut stand = homed(rig);
+    let mut stand = homed(rig, 2.0);
     let found_m = stand.telemetry.unwrap().unstretched_at_zero_m;
     let real_m = stand.plant().unstretched_at_zero_m();
     let pairs = found_m.iter().zip(real_m);
@@ -86,7 +89,7 @@ fn a_leg_with_narrow_anchors_is_armed() {
         ("joint_mm = 29", "joint_mm = 45"),
     ];
     let rig = rig(&tall, 13.0, "");
-    let mut stand = homed(&rig);
+    let mut stand = homed(&rig, 2.0);
     stand.wait(3.0).unwrap();
     assert!(!stand.faults().any(), "{:?}", stand.faults());
     let [pretension_n, wanted_n] = [

@@ -3,17 +3,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::other_legs::with_stiffness;
+use super::other_legs::{HOMES_S, homed, with_stiffness};
 use crate::sim::station_stand::{armed, pass, ticks};
 use leg_base::failure::Failure;
-use leg_bench::stand::{Stand, move_to};
-use leg_firmware::command::Command;
-use leg_firmware::supervisor::State;
+use leg_bench::stand::move_to;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::derived::derived_gains;
 use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::link::InProcess;
-use leg_sim::plant::{Defect, Start};
+use leg_sim::plant::Defect;
 use leg_sim::scenario::Scenario;
 use leg_sim::simulation::Simulation;
 
@@ -166,14 +164,7 @@ fn a_long_homing_is_told_before() {
             rest.split_once(" s ")?.0.parse::<f64>().ok()
         });
         let told_s = told.unwrap_or_else(|| panic!("{notes:?}"));
-        let mut stand = Stand::new(&rig, &rig.plant, Start::Slack { slack_mm: 1.0 }, 1).unwrap();
-        stand.wait(0.2).unwrap();
-        stand.command(&Command::Home).unwrap();
-        stand.wait(0.1).unwrap();
-        stand
-            .tick_until(300.0, "active", |stand| stand.state() == State::Active)
-            .unwrap();
-        let lasts_s = stand.time_s() - 0.2;
+        let lasts_s = homed(&rig, 1.0).time_s() - HOMES_S;
         assert!(
             (told_s / lasts_s - 1.0).abs() < 0.2,
             "{told_s} s, {lasts_s} s"

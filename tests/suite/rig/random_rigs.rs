@@ -202,6 +202,14 @@ fn drawn_rigs_with_slow_motors_work() {
     }
 }
 
+/// Soft tendons that a move sets out on before their pretension is up, where they are softer still, show a payload that is not there.
+#[test]
+fn a_soft_leg_sets_out_with_its_pretension() {
+    let drawn = draw(9620);
+    let rig = RigFile::parse("drawn", &drawn.text).unwrap();
+    assert_eq!(failure(&drawn, &rig), None);
+}
+
 #[test]
 fn rigs_that_are_accepted_work() {
     run(1, 12);

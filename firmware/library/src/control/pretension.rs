@@ -14,9 +14,9 @@ const TOLERANCE: f32 = 1e-3;
 /// and `stiffness_lean` hold it.
 const STEP_N: f32 = 10.0;
 
-/// A target is on its way where its pretension differs by more than this part from the one at which a stiffness is searched for: its tendons are
-/// about as much softer or stiffer.
-const ON_ITS_WAY_PART: f32 = 0.05;
+/// A target is on its way where its pretension differs by more than this part from the one at which a stiffness is searched for, or from the one that
+/// is asked for: its tendons are about as much softer or stiffer.
+pub(super) const ON_ITS_WAY_PART: f32 = 0.05;
 
 /// What the pretension is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]

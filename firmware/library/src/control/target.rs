@@ -4,6 +4,7 @@ use super::{
     CYCLE_S, LoadEstimate, Mechanism,
     bounds::{clamp_symmetric, max, min},
     inertia::Turn,
+    pretension::ON_ITS_WAY_PART,
     tendon_damping::TendonDamping,
 };
 use crate::settings::Settings;
@@ -39,6 +40,17 @@ pub struct Target<T> {
 }
 
 impl<T: Scalar> Target<T> {
+    /// Whether the pretension is still on its way to a wish, N, as far as the bounds allow that.
+    #[inline(always)]
+    pub fn is_far_from_pretension(&self, wish_n: T) -> bool {
+        let allowed_n = min(
+            max(wish_n, self.distribution.pretension_min),
+            self.distribution.pretension_max,
+        );
+        let far = (allowed_n - self.pretension_n).abs() > T::from(ON_ITS_WAY_PART) * allowed_n;
+        far && self.distribution.feasible()
+    }
+
     /// Whether the bounds leave a range of pretensions that the noise of the load does not close.
     #[inline(always)]
     pub fn has_room(&self) -> bool {

@@ -10,7 +10,8 @@ use super::station::{Station, StationKeeping};
 use super::stretch::StretchSearch;
 use crate::command::Compensation;
 use crate::control::{
-    CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, TargetDemand, Trajectory, Unloaded,
+    CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, Target, TargetDemand, Trajectory,
+    Unloaded,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
@@ -24,6 +25,8 @@ pub struct Active<T> {
     pub commanded: Option<[T; 2]>,
     /// Whether every tendon has been above the minimum tension since the leg was armed.
     pub tensioned: bool,
+    /// Whether the pretension has come up since the leg was armed, or a stream was begun.
+    pretensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
     pub disarming: bool,
     /// What limits a leg that keeps station.
@@ -70,6 +73,7 @@ impl<T: Scalar> Active<T> {
             trajectory: Trajectory::new(shared.limits.motion, loaded.half_tangent()),
             commanded: None,
             tensioned: false,
+            pretensioned: false,
             disarming: false,
             station: StationKeeping::No,
             faults: FaultSet::NONE,
@@ -140,8 +144,8 @@ impl<T: Scalar> Active<T> {
             Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
-                // A leg that is not taut yet does not set out.
-                if self.slack.taken_up() {
+                self.pretensioned = self.pretensioned || self.has_pretension(shared);
+                if self.pretensioned {
                     let joint_damping = shared.limits.joint_damping;
                     self.trajectory
                         .advance_plan(&mut shared.stream, joint_damping);
@@ -204,6 +208,8 @@ impl<T: Scalar> Active<T> {
                 stream.begin(start, point)?;
                 shared.targets.take_last_newtons(true);
                 self.trajectory.begin_stream();
+                // Its times are those of its points: it does not wait for the pretension.
+                self.pretensioned = true;
                 self.commanded = None;
                 shared.refused = false;
                 Ok(())
@@ -211,6 +217,20 @@ impl<T: Scalar> Active<T> {
             (_, false) => Err(PointRefusal::NoStream),
             (_, true) => stream.extend(tick, point),
         }
+    }
+
+    /// Whether the pretension has come up, so that the leg may set out. On slack or softer tendons it would swing, and what they show then is taken
+    /// for a payload (`a_soft_leg_sets_out_with_its_pretension`).
+    #[inline(always)]
+    fn has_pretension(&self, shared: &Shared<T>) -> bool {
+        let wish_n = shared.pretension.pretension_n();
+        let comes_up = |target: &Target<T>| target.is_far_from_pretension(wish_n);
+        self.slack.taken_up()
+            && (self.without_target
+                || shared
+                    .target
+                    .as_ref()
+                    .is_some_and(|target| !comes_up(target)))
     }
 
     /// A step of the search for how much the tendons stretch, until the leg is asked for more than a pretension. True if they were scaled.

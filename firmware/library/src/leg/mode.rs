@@ -142,11 +142,13 @@ impl<T: Scalar> Mode<T> {
     }
 
     /// What the motors do that a leg which is held goes on with while it brakes. Those of a leg at rest follow its load and its swing by
-    /// the load cells: once one of these is in doubt, that is not gone on with.
+    /// the load cells: once one of these is in doubt, that is not gone on with. Nor is it where a motor's current is in doubt: one whose counter counts
+    /// the other way would be driven on for as long as it brakes.
     #[inline(always)]
     pub fn momentum(&self, shared: &Shared<T>, trust: Trust) -> Momentum<T> {
+        let doubted = !(trust.cells && trust.currents);
         let steps_m = match self {
-            Self::Active(active) if !trust.cells && !active.trajectory.moving() => [T::zero(); 3],
+            Self::Active(active) if doubted && !active.trajectory.moving() => [T::zero(); 3],
             _ => shared.axes.each_ref().map(Axis::moved_m),
         };
         let ticks_to_end = match self {
@@ -261,15 +263,16 @@ mod tests {
         (active, shared)
     }
 
-    /// A leg on its way is braked from its speed, whatever its cells show. One at rest is braked from what its cells had its motors
-    /// do, unless they are in doubt.
+    /// A leg on its way is braked from its speed, whatever its cells and its currents show. One at rest is braked from what its cells had its motors
+    /// do, unless they or a motor are in doubt.
     #[test]
-    fn a_leg_at_rest_goes_on_with_nothing_that_doubted_cells_ask_for() {
-        for (moving, cells, goes_on) in [
-            (false, true, true),
-            (false, false, false),
-            (true, true, true),
-            (true, false, true),
+    fn a_leg_at_rest_goes_on_with_nothing_that_doubted_sensors_ask_for() {
+        for (moving, cells, currents, goes_on) in [
+            (false, true, true, true),
+            (false, false, true, false),
+            (false, true, false, false),
+            (true, true, true, true),
+            (true, false, false, true),
         ] {
             let (mut active, mut shared) = armed();
             if moving {
@@ -285,13 +288,16 @@ mod tests {
                 pose: true,
                 counters: true,
                 free: true,
-                currents: true,
+                currents,
                 cells,
                 unfaulted: true,
             };
             let [_, found_m, _] = Mode::Active(active).momentum(&shared, trust).steps_m;
             let expected_m = if goes_on { step_m } else { 0.0 };
-            assert!((found_m - expected_m).abs() < 1e-9, "{moving} {cells}");
+            assert!(
+                (found_m - expected_m).abs() < 1e-9,
+                "{moving} {cells} {currents}"
+            );
         }
     }
 

@@ -8,7 +8,7 @@ use tempfile::TempPath;
 /// The most unfinished files of one name.
 const PARTS_MAX: u32 = 1000;
 
-/// A file that is written beside its name, under one that says so: `leg.part.mcap` for `leg.mcap`. It is removed where it is
+/// A file that is written beside its name, or the file that a link of that name leads to, under one that says so: `leg.part.mcap` for `leg.mcap`. It is removed where it is
 /// neither committed nor kept.
 #[derive(Debug)]
 pub struct PartFile {
@@ -24,15 +24,16 @@ impl PartFile {
     /// at work on it.
     pub fn create(to: &Path) -> io::Result<(Self, File)> {
         super::require_file(to)?;
+        let to = super::linked(to);
         if let Some(directory) = to.parent() {
             std::fs::create_dir_all(directory)?;
         }
         for number in 1..PARTS_MAX {
-            let part = part_path(to, number);
+            let part = part_path(&to, number);
             match File::create_new(&part) {
                 Ok(file) => {
                     lock(&file);
-                    let (to, part) = (to.into(), TempPath::try_from_path(part)?);
+                    let part = TempPath::try_from_path(part)?;
                     return Ok((Self { to, part }, file));
                 }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => require_idle(&part)?,
@@ -61,7 +62,7 @@ impl PartFile {
     /// The first of those that are there already: of a program that was killed, or that is still at work.
     #[must_use]
     pub fn unfinished(to: &Path) -> Option<PathBuf> {
-        Some(part_path(to, 1)).filter(|part| part.exists())
+        Some(part_path(&super::linked(to), 1)).filter(|part| part.exists())
     }
 }
 

@@ -199,7 +199,7 @@ impl OperatorError {
                 ),
             ),
             Self::Cancelled => Failure::failed(
-                "ended by Ctrl-C",
+                "ended by Ctrl-C or a signal",
                 "the leg is in hold if it was driven; one that was being disarmed goes on to relax",
             ),
             Self::Frame(error) => Failure::refused(

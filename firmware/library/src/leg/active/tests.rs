@@ -170,6 +170,7 @@ fn a_leg_that_loses_its_target_stops_in_the_same_tick() {
     let measured = measured([8.0 * f_min_n; 3]);
     let away = Direction::from_xy(0.3, 0.0).unwrap();
     active.go(&mut shared, &away);
+    active.pretensioned = true;
     for _ in 0..100 {
         for phase in [Phase::Estimate, Phase::Target, Phase::Plan] {
             active.step(phase, &mut shared, &measured).unwrap();
@@ -248,4 +249,28 @@ fn a_leg_at_rest_that_gives_way_for_long_stays_behind() {
             assert_eq!(stays_behind, expected, "{tensioned} {moves} {part} {step}");
         }
     }
+}
+
+/// A leg sets out on a move once its pretension has come up to within 5 %, and not before; a stream has its own times.
+#[test]
+fn a_move_waits_for_the_pretension() {
+    let (mut active, mut shared, f_min_n) = armed(1.0);
+    let shown = measured([f_min_n; 3]);
+    let wish_n = shared.pretension.pretension_n();
+    active.go(&mut shared, &Direction::from_xy(0.1, 0.0).unwrap());
+    let mut waited = 0;
+    while active.trajectory.ticks_to_end().is_none() {
+        for phase in [Phase::Estimate, Phase::Target, Phase::Plan] {
+            active.step(phase, &mut shared, &shown).unwrap();
+        }
+        let pretension_n = shared.target.unwrap().pretension_n;
+        let set_out = active.trajectory.ticks_to_end().is_some();
+        assert!(
+            pretension_n > 0.949 * wish_n || !set_out,
+            "{pretension_n} N"
+        );
+        waited += usize::from(!set_out && pretension_n > 0.951 * wish_n);
+    }
+    // The path is planned meanwhile.
+    assert!(waited < 20, "{waited}");
 }
