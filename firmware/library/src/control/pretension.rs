@@ -3,6 +3,7 @@
 use super::{
     Mechanism, Target,
     bounds::{clamp_symmetric, max, min},
+    target::ON_ITS_WAY_PART,
 };
 use crate::set_point::StreamTension;
 use leg_model::{BendingAxis, Error, Scalar, StiffnessCommand};
@@ -13,10 +14,6 @@ const TOLERANCE: f32 = 1e-3;
 /// Longest step of the search, N: the secant's slope is not trusted over more of a curved stiffness. The scenarios `stiffness`
 /// and `stiffness_lean` hold it.
 const STEP_N: f32 = 10.0;
-
-/// A target is on its way where its pretension differs by more than this part from the one at which a stiffness is searched for, or from the one that
-/// is asked for: its tendons are about as much softer or stiffer.
-pub(super) const ON_ITS_WAY_PART: f32 = 0.05;
 
 /// What the pretension is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,6 @@ use super::{
     CYCLE_S, LoadEstimate, Mechanism,
     bounds::{clamp_symmetric, max, min},
     inertia::Turn,
-    pretension::ON_ITS_WAY_PART,
     tendon_damping::TendonDamping,
 };
 use crate::settings::Settings;
@@ -17,6 +16,10 @@ use nalgebra::Vector3;
 /// An error of the pretension that is not trimmed, N. The motors leave the dead band and a part of the play: on the paper's rig 0.04 N;
 /// summed up, that has a leg that keeps station correct to and fro once a second.
 const TRIM_LEAST_N: f32 = 0.1;
+
+/// A target is on its way where its pretension differs by more than this part from the one at which a stiffness is searched for, or from the one that
+/// is asked for: its tendons are about as much softer or stiffer.
+pub(super) const ON_ITS_WAY_PART: f32 = 0.05;
 
 /// What the tendons shall do.
 #[derive(Clone, Copy, Debug, PartialEq)]
