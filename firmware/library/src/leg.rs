@@ -302,7 +302,7 @@ impl<T: Scalar> Leg<T> {
                     &ErrorGrowth::TENSIONING
                 } else if active.station.kept().is_some() {
                     &ErrorGrowth::STANDING
-                } else if active.trajectory.moving() {
+                } else if active.has_set_out() {
                     &ErrorGrowth::MOVING
                 } else {
                     &ErrorGrowth::RESTING

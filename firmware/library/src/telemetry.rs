@@ -17,7 +17,7 @@ pub struct Telemetry<T> {
     pub homed: bool,
     /// Tendon at which homing failed the last time, from 1; 0 if it did not.
     pub failed_tendon: u8,
-    /// Whether the trajectory moves.
+    /// Whether the trajectory moves, or waits for the pretension to come up.
     pub moving: bool,
     /// Where it was sent: the end of the last move, as horizontal components. After a hold, along a path and before the first move
     /// it is the target.

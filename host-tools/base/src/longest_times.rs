@@ -19,7 +19,7 @@ const FILTER_TIMES: f32 = 10.0;
 const HOMING_TRAVELS: f32 = 8.0;
 const HOMING_RESTS: f32 = 8.0;
 
-/// Longest way of a leg to where it is commanded, by the limits on its motion, and the change of its pretension after that.
+/// Longest way of a leg to where it is commanded, by the limits on its motion, and the longest change of its pretension, before that or after it.
 #[must_use]
 pub fn longest_move(settings: &Settings) -> Duration {
     let motion = &settings.motion;

@@ -127,3 +127,26 @@ fn zero_finding(axis: usize, zero: CurrentZero, used_code: f32) -> String {
 const fn choose(is: bool, yes: &'static str, no: &'static str) -> &'static str {
     if is { yes } else { no }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::zero_finding;
+    use leg_firmware::sensors::CurrentZero;
+
+    /// A zero that was refused, or not found, is told with what it read and what is taken for none.
+    #[test]
+    fn a_zero_that_is_not_used_is_told() {
+        assert_eq!(zero_finding(1, CurrentZero::Found(32_000.0), 32_000.0), "");
+        for (zero, words) in [
+            (CurrentZero::NotFound, "current 1: no zero was found"),
+            (
+                CurrentZero::Refused(40_000.0),
+                "current 1: zero refused: the output read 40000",
+            ),
+        ] {
+            let line = zero_finding(1, zero, 32_768.0);
+            assert!(line.starts_with(words), "{line}");
+            assert!(line.ends_with("32768 is taken for no current\n"), "{line}");
+        }
+    }
+}

@@ -206,3 +206,20 @@ pub(crate) fn home(leg: &LegArgs, options: Options) -> Result<(), Failure> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::stretch_line;
+
+    /// The line stands there where the tendons were found to stretch otherwise, and not where not.
+    #[test]
+    fn tendons_of_another_make_are_told_of() {
+        assert_eq!(stretch_line(1.0), "");
+        for (factor, words) in [
+            (1.06, "tendons    stretch 1.06 times"),
+            (0.8, "tendons    stretch 0.80 times"),
+        ] {
+            assert!(stretch_line(factor).starts_with(words), "{factor}");
+        }
+    }
+}

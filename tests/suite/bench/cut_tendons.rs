@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_bench::strikes::{Activity, StrikeCampaign};
+use leg_firmware::supervisor::{FAULT_TABLE, Reaction};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
@@ -32,6 +33,8 @@ fn a_cut_tendon_is_named_within_half_a_second() {
         let named_s = one.named_s.unwrap();
         latest_s = latest_s.max(named_s);
         assert!(named_s < WITHIN_S, "{}: {named_s} s", one.case);
+        let named = FAULT_TABLE.iter().find(|row| Some(row.name) == one.named);
+        assert_eq!(named.unwrap().reaction, Reaction::Hold, "{}", one.case);
     }
     println!("{latest_s} s");
 }

@@ -297,9 +297,11 @@ fn a_motor_whose_current_is_in_doubt_is_not_braked_at_rest() {
     require_within(291_128, &[(6264, "encoder_reversed", 1.0)]);
 }
 
-/// The nearest to their bars that are known of one seed.
+/// The nearest to their bars that are known.
 #[test]
 fn what_is_nearest_to_its_bar_keeps_it() {
+    require_within(271_128, &[(10_784, "cell_offset_step_down", 0.5)]);
+    require_within(777, &[(8833, "cell_wanders", 6.5)]);
     require_within(
         281_129,
         &[

@@ -192,7 +192,7 @@ fn run(first_seed: u64, count: usize) {
     );
 }
 
-/// Big motors that start slowly at a tendon that the swinging leg leaves slack again, and ones that set out before their pretension has come up.
+/// Big motors that start slowly at a tendon that the swinging leg leaves slack again, and ones whose moves set out too fast for them.
 #[test]
 fn drawn_rigs_with_slow_motors_work() {
     for seed in [5031, 5162] {

@@ -35,7 +35,9 @@ fn a_payload_is_compensated_slowly_and_without_a_host() {
         "firmware/SAFETY.md",
         &[
             format!(
-                "back to {BACK_MM} mm within {WITHIN_S} s up to a tilt of 20°, within {EDGE_S} s at 30°"
+                "back to {BACK_MM} mm within {} s up to a tilt of 20°, within {} s at 30°",
+                WITHIN_S + OVER_S,
+                EDGE_S + OVER_S
             ),
             format!("corrects at up to {FASTEST_MM_PER_S} mm/s at the tip"),
         ],

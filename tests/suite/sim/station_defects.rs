@@ -43,7 +43,7 @@ fn a_sensor_that_reads_wrong_ends_it_in_hold_or_moves_nothing() {
     let both = both.chain(found_sometimes.map(|defect| (defect, false)));
     let sound = keeping(&paper(), [30.0, 20.0], 1.0, 21);
     let home_m = sound.truth.tip_m;
-    for (number, (defect, always)) in both.enumerate() {
+    for (number, (defect, always)) in both.flat_map(|one| [one; 3]).enumerate() {
         let defect = defect(number % 3);
         let mut bench = sound.clone();
         bench.plant().set_defect(defect, true);
@@ -102,7 +102,7 @@ fn a_cell_that_drifts_slowly_does_not_lead_the_leg_away() {
 
 /// How far the tip is led in a minute, mm, by a cell that drifts by 5 N/s for one tick of so many; what the leg does, and its faults.
 fn drifted(every: u32) -> (f64, State, FaultSet) {
-    let mut bench = keeping(&paper(), [30.0, 20.0], 0.5, 31);
+    let mut bench = keeping(&paper(), [30.0, 20.0], 1.0, 31);
     let home_m = bench.truth.tip_m;
     let mut largest_mm = 0.0_f64;
     for _ in 0..60 * u32::from(TICK_HZ) / every {

@@ -43,15 +43,15 @@ pub struct Target<T> {
 }
 
 impl<T: Scalar> Target<T> {
-    /// Whether the pretension is still on its way to a wish, N, as far as the bounds allow that.
+    /// Whether the pretension is still on its way up to a wish, N, as far as the bounds allow that.
     #[inline(always)]
-    pub fn is_far_from_pretension(&self, wish_n: T) -> bool {
+    pub fn is_below_pretension(&self, wish_n: T) -> bool {
         let allowed_n = min(
             max(wish_n, self.distribution.pretension_min),
             self.distribution.pretension_max,
         );
-        let far = (allowed_n - self.pretension_n).abs() > T::from(ON_ITS_WAY_PART) * allowed_n;
-        far && self.distribution.feasible()
+        let below = allowed_n - self.pretension_n > T::from(ON_ITS_WAY_PART) * allowed_n;
+        below && self.distribution.feasible()
     }
 
     /// Whether the bounds leave a range of pretensions that the noise of the load does not close.

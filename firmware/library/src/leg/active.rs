@@ -1,5 +1,7 @@
 //! Following commands: estimate, pretension, target and plan in turn, one a tick.
 
+mod streaming;
+
 use super::give_way::{GIVEN_WAY_STEPS, gives_way};
 use super::length_offsets::LengthOffsets;
 use super::phase::Phase;
@@ -10,10 +12,8 @@ use super::station::{Station, StationKeeping};
 use super::stretch::StretchSearch;
 use crate::command::Compensation;
 use crate::control::{
-    CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, Target, TargetDemand, Trajectory,
-    Unloaded,
+    CYCLE_TICKS, Debounce, LoadEstimation, Measured, TargetDemand, Trajectory, Unloaded,
 };
-use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
 use leg_model::{Direction, Error, Scalar};
 
@@ -25,8 +25,8 @@ pub struct Active<T> {
     pub commanded: Option<[T; 2]>,
     /// Whether every tendon has been above the minimum tension since the leg was armed.
     pub tensioned: bool,
-    /// Whether the pretension has come up since the leg was armed, or a stream was begun.
-    pretensioned: bool,
+    /// Whether the leg may set out: since it was armed the target's pretension has come up, or could not, or a stream was begun.
+    pub pretensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
     pub disarming: bool,
     /// What limits a leg that keeps station.
@@ -111,7 +111,7 @@ impl<T: Scalar> Active<T> {
                 if self.tensioned {
                     shared.feed_friction();
                 }
-                if self.trajectory.moving() {
+                if self.has_set_out() {
                     shared.damping.forget_small_swing();
                 } else if shared
                     .target
@@ -126,7 +126,7 @@ impl<T: Scalar> Active<T> {
                 self.faults.add(Fault::OffStation, off_station);
                 self.faults
                     .add(Fault::Swings, shared.damping.keeps_swinging());
-                let rests = self.tensioned && !self.trajectory.moving();
+                let rests = self.tensioned && !self.has_set_out();
                 let given_way = self
                     .given_way
                     .update(rests && gives_way(shared, self.without_target, measured));
@@ -144,7 +144,10 @@ impl<T: Scalar> Active<T> {
             Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
-                self.pretensioned = self.pretensioned || self.has_pretension(shared);
+                if !self.pretensioned && self.has_pretension(shared) {
+                    self.pretensioned = true;
+                    shared.targets.take_last_newtons(self.trajectory.moving());
+                }
                 if self.pretensioned {
                     let joint_damping = shared.limits.joint_damping;
                     self.trajectory
@@ -167,70 +170,26 @@ impl<T: Scalar> Active<T> {
         self.commanded = Some([along.x, along.y]);
     }
 
-    /// Comes to rest.
+    /// Comes to rest. One that has not set out yet does not.
     pub fn hold(&mut self, shared: &mut Shared<T>) {
         self.commanded = None;
-        if !self.leave_stream(shared) {
+        if !self.pretensioned {
+            let here = self.trajectory.step();
+            self.trajectory.start(here);
+        } else if !self.leave_stream(shared) {
             self.trajectory.stop();
         }
     }
 
-    /// Leaves a stream for rest; false if none is followed.
-    fn leave_stream(&mut self, shared: &mut Shared<T>) -> bool {
-        shared.stream.leave();
-        let streamed = self.trajectory.streamed();
-        if streamed {
-            let motion = self.trajectory.motion();
-            self.trajectory
-                .leave_stream(&shared.stream.limits.rest_segment(&motion));
-        }
-        streamed
-    }
-
-    /// Takes a set-point; `tick` is the present one. The motors come to a target in the tick that executes the next command, so a
-    /// stream begins at the next target, a cycle later.
-    pub fn follow(
-        &mut self,
-        shared: &mut Shared<T>,
-        tick: u32,
-        point: &SetPoint,
-    ) -> Result<(), PointRefusal> {
-        let stream = &mut shared.stream;
-        match (point.part, self.trajectory.streamed()) {
-            _ if stream.repeats(point) => Ok(()),
-            (StreamPart::First, true) => Err(PointRefusal::Following),
-            (StreamPart::First, false) if !self.slack.taken_up() => Err(PointRefusal::NotTaut),
-            (StreamPart::First, false) => {
-                let start = Knot {
-                    tick: tick.wrapping_add(u32::from(CYCLE_TICKS)),
-                    motion: self.trajectory.next_motion(),
-                };
-                stream.begin(start, point)?;
-                shared.targets.take_last_newtons(true);
-                self.trajectory.begin_stream();
-                // Its times are those of its points: it does not wait for the pretension.
-                self.pretensioned = true;
-                self.commanded = None;
-                shared.refused = false;
-                Ok(())
-            }
-            (_, false) => Err(PointRefusal::NoStream),
-            (_, true) => stream.extend(tick, point),
-        }
-    }
-
-    /// Whether the pretension has come up, so that the leg may set out. On slack or softer tendons it would swing, and what they show then is taken
-    /// for a payload (`a_soft_leg_sets_out_with_its_pretension`).
+    /// Whether the leg may set out: its tendons are taut, and the target's pretension has come up as far as the bounds allow. On softer tendons it would
+    /// swing, and what they show then would be taken for a payload (`a_soft_leg_sets_out_with_its_pretension`). A leg that is led down to be
+    /// disarmed does not wait for the pretension, nor does one without a target.
     #[inline(always)]
     fn has_pretension(&self, shared: &Shared<T>) -> bool {
         let wish_n = shared.pretension.pretension_n();
-        let comes_up = |target: &Target<T>| target.is_far_from_pretension(wish_n);
-        self.slack.taken_up()
-            && (self.without_target
-                || shared
-                    .target
-                    .as_ref()
-                    .is_some_and(|target| !comes_up(target)))
+        let target = shared.target.as_ref();
+        let up = target.is_some_and(|target| !target.is_below_pretension(wish_n));
+        self.slack.taken_up() && (up || self.disarming || self.without_target)
     }
 
     /// A step of the search for how much the tendons stretch, until the leg is asked for more than a pretension. True if they were scaled.
@@ -253,7 +212,13 @@ impl<T: Scalar> Active<T> {
             && !self.without_target
     }
 
-    /// Whether it is on its way, measures its tendons after homing, or corrects where it keeps station.
+    /// Whether it has set out and is on its way, or plans one: not while it waits for its pretension.
+    #[inline(always)]
+    pub fn has_set_out(&self) -> bool {
+        self.pretensioned && self.trajectory.moving()
+    }
+
+    /// Whether it is on its way or waits to set out, measures its tendons after homing, or corrects where it keeps station.
     pub fn moving(&self) -> bool {
         self.trajectory.moving() || !self.stretch.is_over() || self.station.corrects()
     }
@@ -293,7 +258,7 @@ impl<T: Scalar> Active<T> {
     /// Estimates the pose, and takes the load that the tendons show. While they come up from slack, their tensions do not show it.
     #[inline(always)]
     fn estimate(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
-        let moving = self.trajectory.moving();
+        let moving = self.has_set_out();
         self.frozen = shared.compensation == Compensation::Frozen || self.frozen && moving;
         let load_estimation = if !self.tensioned {
             LoadEstimation::Slack

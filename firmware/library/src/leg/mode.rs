@@ -143,17 +143,17 @@ impl<T: Scalar> Mode<T> {
 
     /// What the motors do that a leg which is held goes on with while it brakes. Those of a leg at rest follow its load and its swing by
     /// the load cells: once one of these is in doubt, that is not gone on with. Nor is it where a motor's current is in doubt: one whose counter counts
-    /// the other way would be driven on for as long as it brakes.
+    /// the other way would be driven on while the leg brakes.
     #[inline(always)]
     pub fn momentum(&self, shared: &Shared<T>, trust: Trust) -> Momentum<T> {
         let doubted = !(trust.cells && trust.currents);
         let steps_m = match self {
-            Self::Active(active) if doubted && !active.trajectory.moving() => [T::zero(); 3],
+            Self::Active(active) if doubted && !active.has_set_out() => [T::zero(); 3],
             _ => shared.axes.each_ref().map(Axis::moved_m),
         };
         let ticks_to_end = match self {
             // One at rest has no way to go: it stops what brakes its swing.
-            Self::Active(active) if !active.trajectory.moving() => Some(0),
+            Self::Active(active) if !active.has_set_out() => Some(0),
             Self::Active(active) => active.trajectory.ticks_to_end(),
             // A leg that homes has no end to go to, and hangs free: whatever its motor goes on lifts it.
             Self::Homing(_) => Some(ENDING_TICKS),
@@ -263,22 +263,26 @@ mod tests {
         (active, shared)
     }
 
-    /// A leg on its way is braked from its speed, whatever its cells and its currents show. One at rest is braked from what its cells had its motors
-    /// do, unless they or a motor are in doubt.
+    /// A leg on its way is braked from its speed, whatever its cells and its currents show. One at rest, or that waits to set out, is braked from what its
+    /// cells had its motors do, unless they or a motor are in doubt.
     #[test]
-    fn a_leg_at_rest_goes_on_with_nothing_that_doubted_sensors_ask_for() {
-        for (moving, cells, currents, goes_on) in [
-            (false, true, true, true),
-            (false, false, true, false),
-            (false, true, false, false),
-            (true, true, true, true),
-            (true, false, false, true),
+    fn a_leg_at_rest_goes_on_with_nothing_while_a_sensor_is_doubted() {
+        for (sent, pretensioned, cells, currents, goes_on) in [
+            (false, true, true, true, true),
+            (false, true, false, true, false),
+            (false, true, true, false, false),
+            (true, false, true, true, true),
+            (true, false, false, true, false),
+            (true, false, true, false, false),
+            (true, true, true, true, true),
+            (true, true, false, false, true),
         ] {
             let (mut active, mut shared) = armed();
-            if moving {
+            active.pretensioned = pretensioned;
+            if sent {
                 active.go(&mut shared, &Direction::from_xy(0.1, 0.0).unwrap());
             }
-            assert_eq!(active.moving(), moving);
+            assert_eq!(active.moving(), sent);
             let step_m = 1e-6;
             for tick in 0..1000 {
                 shared.axes[1].track(f64::from(tick) * step_m);
@@ -296,7 +300,7 @@ mod tests {
             let expected_m = if goes_on { step_m } else { 0.0 };
             assert!(
                 (found_m - expected_m).abs() < 1e-9,
-                "{moving} {cells} {currents}"
+                "{sent} {pretensioned} {cells} {currents}"
             );
         }
     }

@@ -8,7 +8,8 @@ use tempfile::TempPath;
 /// The most unfinished files of one name.
 const PARTS_MAX: u32 = 1000;
 
-/// A file that is written beside its name, or the file that a link of that name leads to, under one that says so: `leg.part.mcap` for `leg.mcap`. It is removed where it is
+/// A file that is written beside its name, under one that says so: `leg.part.mcap` for `leg.mcap`. Where the name is a link, it is written beside the file
+/// that the link leads to, by the name of that. It is removed where it is
 /// neither committed nor kept.
 #[derive(Debug)]
 pub struct PartFile {

@@ -16,8 +16,8 @@ const EVERY_TICKS: u16 = 16;
 /// seconds.
 const SILENT_TIME: Duration = Duration::from_secs(10);
 
-/// Longest time of a command until it is stopped, by the leg's ticks.
-const COMMAND_TIME: Duration = Duration::from_secs(5);
+/// Longest time of a command until it is stopped, by the leg's ticks: slow motors bring the pretension up first.
+const COMMAND_TIME: Duration = Duration::from_secs(20);
 
 /// What is done with each telemetry: true when it was the last.
 type Watch<'a> = &'a mut dyn FnMut(&Telemetry<f32>) -> bool;

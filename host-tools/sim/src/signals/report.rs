@@ -127,7 +127,7 @@ signals! {
         = |at| at.telemetry.homed;
     State Count failed_tendon "The tendon at which homing failed the last time, from 1; 0 if it did not."
         = |at| Some(at.telemetry.failed_tendon.into());
-    State Flag moving "Whether the trajectory moves."
+    State Flag moving "Whether the trajectory moves, or waits for the pretension to come up."
         = |at| at.telemetry.moving;
     Commanded Number azimuth_commanded_deg "Where it was sent to lean, 0 to 360°: by the last move; the reference along a path, after a hold and before the first move."
         = |at| angles_deg(at.telemetry.commanded.map(f64::from))[0];

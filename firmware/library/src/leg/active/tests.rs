@@ -2,7 +2,7 @@
 
 use super::{Active, GIVEN_WAY_STEPS, Phase, StationKeeping};
 use crate::command::Compensation;
-use crate::control::Measured;
+use crate::control::{Measured, PretensionDemand};
 use crate::leg::shared::{Checked, Shared};
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::settings::Settings;
@@ -172,9 +172,7 @@ fn a_leg_that_loses_its_target_stops_in_the_same_tick() {
     active.go(&mut shared, &away);
     active.pretensioned = true;
     for _ in 0..100 {
-        for phase in [Phase::Estimate, Phase::Target, Phase::Plan] {
-            active.step(phase, &mut shared, &measured).unwrap();
-        }
+        cycle(&mut active, &mut shared, &measured);
     }
     let led = |shared: &Shared<f64>| shared.axes.iter().any(|axis| axis.led_m() != 0.0);
     assert!(active.moving() && led(&shared));
@@ -207,6 +205,7 @@ fn a_load_that_was_frozen_stays_so_until_the_leg_rests() {
         let (mut active, mut shared, f_min_n) = armed(2.0);
         active.tensioned = true;
         active.frozen = before;
+        active.pretensioned = true;
         shared.compensation = compensation;
         if moves {
             active.go(&mut shared, &away);
@@ -233,6 +232,7 @@ fn a_leg_at_rest_that_gives_way_for_long_stays_behind() {
         let f_max_n = shared.mechanism.f_max_n;
         active.tensioned = tensioned;
         shared.compensation = Compensation::Off;
+        active.pretensioned = true;
         if moves {
             active.go(&mut shared, &away);
         }
@@ -251,26 +251,91 @@ fn a_leg_at_rest_that_gives_way_for_long_stays_behind() {
     }
 }
 
-/// A leg sets out on a move once its pretension has come up to within 5 %, and not before; a stream has its own times.
+/// One cycle, without what comes every other one.
+fn cycle(active: &mut Active<f64>, shared: &mut Shared<f64>, measured: &Measured<f64>) {
+    for phase in [Phase::Estimate, Phase::Target, Phase::Plan] {
+        active.step(phase, shared, measured).unwrap();
+    }
+}
+
+/// A leg that was armed at the minimum tension and sent away at once, and what is measured of it.
+fn sent() -> (Active<f64>, Shared<f64>, Measured<f64>) {
+    let (mut active, mut shared, f_min_n) = armed(1.0);
+    active.go(&mut shared, &Direction::from_xy(0.1, 0.0).unwrap());
+    (active, shared, measured([f_min_n; 3]))
+}
+
+/// A leg sets out on a move once its pretension has come up to within 5 %, and not before: until then it moves for its host, and rests for itself.
 #[test]
 fn a_move_waits_for_the_pretension() {
-    let (mut active, mut shared, f_min_n) = armed(1.0);
-    let shown = measured([f_min_n; 3]);
+    let (mut active, mut shared, shown) = sent();
     let wish_n = shared.pretension.pretension_n();
-    active.go(&mut shared, &Direction::from_xy(0.1, 0.0).unwrap());
-    let mut waited = 0;
-    while active.trajectory.ticks_to_end().is_none() {
-        for phase in [Phase::Estimate, Phase::Target, Phase::Plan] {
-            active.step(phase, &mut shared, &shown).unwrap();
+    let mut planned = 0;
+    for _ in 0..5000 {
+        cycle(&mut active, &mut shared, &shown);
+        let up = shared.target.unwrap().pretension_n >= 0.95 * wish_n;
+        assert!(active.moving());
+        assert_eq!(active.has_set_out(), up);
+        planned += usize::from(up);
+        if active.trajectory.ticks_to_end().is_some() {
+            assert!(up && planned < 20, "{planned}");
+            return;
         }
-        let pretension_n = shared.target.unwrap().pretension_n;
-        let set_out = active.trajectory.ticks_to_end().is_some();
-        assert!(
-            pretension_n > 0.949 * wish_n || !set_out,
-            "{pretension_n} N"
-        );
-        waited += usize::from(!set_out && pretension_n > 0.951 * wish_n);
     }
-    // The path is planned meanwhile.
-    assert!(waited < 20, "{waited}");
+    panic!("it does not set out");
+}
+
+/// Nor for one that no bounds allow, nor for one that falls.
+#[test]
+fn no_move_waits_for_a_pretension_that_does_not_come_up() {
+    let (mut active, mut shared, shown) = sent();
+    shared.pretension.demand(PretensionDemand::Pretension(1e3));
+    for _ in 0..5000 {
+        cycle(&mut active, &mut shared, &shown);
+    }
+    let target = shared.target.unwrap();
+    assert!(active.has_set_out() || active.trajectory.ticks_to_end().is_none());
+    assert!(active.pretensioned && target.pretension_n > 0.9 * target.distribution.pretension_max);
+    let (mut active, mut shared, f_min_n) = armed(10.0);
+    shared
+        .pretension
+        .demand(PretensionDemand::Pretension(2.0 * f_min_n));
+    cycle(&mut active, &mut shared, &measured([10.0 * f_min_n; 3]));
+    assert!(active.pretensioned);
+}
+
+/// A stream has its own times, and a leg that is led down may be so with less.
+#[test]
+fn a_stream_and_a_disarm_do_not_wait_for_the_pretension() {
+    let (mut active, mut shared, shown) = sent();
+    active.hold(&mut shared);
+    assert!(!active.moving());
+    let point = SetPoint {
+        part: StreamPart::First,
+        tick: 4000,
+        direction: [0.0; 2],
+        rate: [0.0; 2],
+        acceleration: None,
+        tension: None,
+    };
+    active.follow(&mut shared, 0, &point).unwrap();
+    cycle(&mut active, &mut shared, &shown);
+    assert!(active.has_set_out() && active.pretensioned);
+    let (mut active, mut shared, shown) = sent();
+    active.disarm(&mut shared);
+    cycle(&mut active, &mut shared, &shown);
+    assert!(active.has_set_out());
+}
+
+/// A hold of a leg that has not set out leaves it where it is.
+#[test]
+fn a_move_that_waits_is_over_with_a_hold() {
+    let (mut active, mut shared, shown) = sent();
+    cycle(&mut active, &mut shared, &shown);
+    active.hold(&mut shared);
+    for _ in 0..5000 {
+        cycle(&mut active, &mut shared, &shown);
+        assert!(!active.moving());
+    }
+    assert!(active.pretensioned);
 }

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::command::{Command, CommandRefusal, Compensation};
-use crate::control::{LengthError, Measured};
+use crate::control::{LengthError, Measured, ticks};
 use crate::leg::Leg;
 use crate::leg::active::Active;
 use crate::leg::held::{Held, Momentum};
@@ -188,7 +188,7 @@ fn a_brake_gives_way_to_no_load_cell_in_doubt() {
 }
 
 /// Each fault that a load cell may cause: the motors of a leg at rest may have followed that cell, and stand at once. One on its way brakes, and pays no
-/// tendon out by its cells. Every other fault lets both brake, and give way.
+/// tendon out by its cells. Every other fault lets both brake, and give way, but that a leg at rest stands at once, too, where a current is in doubt.
 #[test]
 fn a_held_leg_goes_on_with_nothing_by_any_fault_that_a_load_cell_may_cause() {
     for (fault, of_a_cell) in [
@@ -210,6 +210,9 @@ fn a_held_leg_goes_on_with_nothing_by_any_fault_that_a_load_cell_may_cause() {
             if moves {
                 let went = leg.execute(Command::Move { x: 0.1, y: 0.0 }, &MEASURED);
                 assert_eq!(went, Ok(()));
+                if let Mode::Active(active) = &mut leg.mode {
+                    active.pretensioned = true;
+                }
             }
             for tick in 0..1000 {
                 leg.shared.axes[1].track(1e-6 * f64::from(tick));
@@ -218,10 +221,38 @@ fn a_held_leg_goes_on_with_nothing_by_any_fault_that_a_load_cell_may_cause() {
             let state = leg.supervisor.react(State::Active, FaultSet::single(fault));
             assert_eq!(state, State::Held);
             leg.enter(state, &MEASURED);
-            assert_eq!(leg.mode.brakes(), moves || !of_a_cell, "{fault:?} {moves}");
+            let stands = of_a_cell || fault == Fault::CurrentDisagrees;
+            assert_eq!(leg.mode.brakes(), moves || !stands, "{fault:?} {moves}");
             let gives_way = leg.shared.f_max_n < f64::MAX;
-            assert_eq!(gives_way, !of_a_cell, "{fault:?} {moves}");
+            let expected = leg.mode.brakes() && !of_a_cell;
+            assert_eq!(gives_way, expected, "{fault:?} {moves}");
         }
+    }
+}
+
+/// A tendon that is slack while the leg is on its way may say that something holds it: it is braked in 0.06 s, and by any other fault in 0.15 s.
+#[test]
+fn a_leg_on_its_way_is_braked_shortly_where_a_tendon_is_slack() {
+    for (fault, brake_s) in [(Fault::Slack, 0.06), (Fault::LateTick, 0.15)] {
+        let mut leg = armed();
+        let went = leg.execute(Command::Move { x: 0.1, y: 0.0 }, &MEASURED);
+        assert_eq!(went, Ok(()));
+        if let Mode::Active(active) = &mut leg.mode {
+            active.pretensioned = true;
+        }
+        for tick in 0..1000 {
+            leg.shared.axes[1].track(1e-6 * f64::from(tick));
+        }
+        leg.shared.axes[1].lead_by(1e-6);
+        let state = leg.supervisor.react(State::Active, FaultSet::single(fault));
+        leg.enter(state, &MEASURED);
+        let most = ticks(0.3);
+        let braked = (0..most).find(|_| {
+            let brakes = leg.mode.brakes();
+            let _ = leg.advance(&MEASURED);
+            !brakes
+        });
+        assert_eq!(braked, Some(ticks(brake_s)), "{fault:?}");
     }
 }
 

@@ -72,6 +72,7 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
         format!(
             "up to {HOMING_N} N where a load cell fails, {HOMING_RUNAWAY_N} N where a driver switches on fully"
         ),
+        format!("until its motor draws too much: {HOMING_N} N, tip {LIFTED_MM} mm"),
         format!("catch it: up to {} more", percent(CUT_BEYOND)),
         format!("by it: up to {} above the maximum", percent(SWAPPED_BEYOND)),
         format!(
