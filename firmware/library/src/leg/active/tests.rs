@@ -9,6 +9,16 @@ use crate::settings::Settings;
 use crate::supervisor::{Fault, SETTLE_CYCLES};
 use leg_model::{Direction, Error, TensionBounds};
 
+/// The first set-point of a stream straight down.
+const FIRST_POINT: SetPoint = SetPoint {
+    part: StreamPart::First,
+    tick: 4000,
+    direction: [0.0; 2],
+    rate: [0.0; 2],
+    acceleration: None,
+    tension: None,
+};
+
 /// What is measured of a leg at rest with these tensions.
 fn measured(tensions_n: [f64; 3]) -> Measured<f64> {
     Measured::resting([0.0; 3], tensions_n)
@@ -44,15 +54,7 @@ fn tendons_that_pull_already_are_not_taken_up_from_slack() {
         let mut active = Active::begin(&mut shared, &measured);
         assert_eq!(active.slack.taken_up(), taut, "{tensions_n:?}");
         assert!(!active.tensioned);
-        let point = SetPoint {
-            part: StreamPart::First,
-            tick: 4000,
-            direction: [0.0; 2],
-            rate: [0.0; 2],
-            acceleration: None,
-            tension: None,
-        };
-        let followed = active.follow(&mut shared, 0, &point);
+        let followed = active.follow(&mut shared, 0, &FIRST_POINT);
         let expected = if taut {
             Ok(())
         } else {
@@ -310,15 +312,7 @@ fn a_stream_and_a_disarm_do_not_wait_for_the_pretension() {
     let (mut active, mut shared, shown) = sent();
     active.hold(&mut shared);
     assert!(!active.moving());
-    let point = SetPoint {
-        part: StreamPart::First,
-        tick: 4000,
-        direction: [0.0; 2],
-        rate: [0.0; 2],
-        acceleration: None,
-        tension: None,
-    };
-    active.follow(&mut shared, 0, &point).unwrap();
+    active.follow(&mut shared, 0, &FIRST_POINT).unwrap();
     cycle(&mut active, &mut shared, &shown);
     assert!(active.has_set_out() && active.pretensioned);
     let (mut active, mut shared, shown) = sent();

@@ -187,6 +187,23 @@ fn a_brake_gives_way_to_no_load_cell_in_doubt() {
     }
 }
 
+/// A leg on its way or at rest, whose second motor turns.
+fn turning(moves: bool) -> Leg<f64> {
+    let mut leg = armed();
+    if moves {
+        let went = leg.execute(Command::Move { x: 0.1, y: 0.0 }, &MEASURED);
+        assert_eq!(went, Ok(()));
+    }
+    if let Mode::Active(active) = &mut leg.mode {
+        active.pretensioned = true;
+    }
+    for tick in 0..1000 {
+        leg.shared.axes[1].track(1e-6 * f64::from(tick));
+    }
+    leg.shared.axes[1].lead_by(1e-6);
+    leg
+}
+
 /// Each fault that a load cell may cause: the motors of a leg at rest may have followed that cell, and stand at once. One on its way brakes, and pays no
 /// tendon out by its cells. Every other fault lets both brake, and give way, but that a leg at rest stands at once, too, where a current is in doubt.
 #[test]
@@ -206,18 +223,7 @@ fn a_held_leg_goes_on_with_nothing_by_any_fault_that_a_load_cell_may_cause() {
         (Fault::CommandTimeout, false),
     ] {
         for moves in [false, true] {
-            let mut leg = armed();
-            if moves {
-                let went = leg.execute(Command::Move { x: 0.1, y: 0.0 }, &MEASURED);
-                assert_eq!(went, Ok(()));
-                if let Mode::Active(active) = &mut leg.mode {
-                    active.pretensioned = true;
-                }
-            }
-            for tick in 0..1000 {
-                leg.shared.axes[1].track(1e-6 * f64::from(tick));
-            }
-            leg.shared.axes[1].lead_by(1e-6);
+            let mut leg = turning(moves);
             let state = leg.supervisor.react(State::Active, FaultSet::single(fault));
             assert_eq!(state, State::Held);
             leg.enter(state, &MEASURED);
@@ -234,16 +240,7 @@ fn a_held_leg_goes_on_with_nothing_by_any_fault_that_a_load_cell_may_cause() {
 #[test]
 fn a_leg_on_its_way_is_braked_shortly_where_a_tendon_is_slack() {
     for (fault, brake_s) in [(Fault::Slack, 0.06), (Fault::LateTick, 0.15)] {
-        let mut leg = armed();
-        let went = leg.execute(Command::Move { x: 0.1, y: 0.0 }, &MEASURED);
-        assert_eq!(went, Ok(()));
-        if let Mode::Active(active) = &mut leg.mode {
-            active.pretensioned = true;
-        }
-        for tick in 0..1000 {
-            leg.shared.axes[1].track(1e-6 * f64::from(tick));
-        }
-        leg.shared.axes[1].lead_by(1e-6);
+        let mut leg = turning(true);
         let state = leg.supervisor.react(State::Active, FaultSet::single(fault));
         leg.enter(state, &MEASURED);
         let most = ticks(0.3);
