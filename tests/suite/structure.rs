@@ -193,6 +193,34 @@ fn both_commands_share_the_build_of_the_dependencies() {
     assert!(again.is_empty(), "{again:#?}");
 }
 
+/// The lines that a manifest has on how each package is compiled for the development profile.
+fn package_profiles(manifest: &str) -> BTreeSet<&str> {
+    let lines = manifest.lines();
+    let lines = lines.skip_while(|line| *line != "[profile.dev.package]");
+    let lines = lines.skip(1).take_while(|line| !line.starts_with('['));
+    let lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
+    lines.collect()
+}
+
+/// Else a check of the package in the target folder of this workspace would compile all of its dependencies again.
+#[test]
+fn the_python_package_is_checked_as_this_workspace_is() {
+    let read = |name: &str| std::fs::read_to_string(workspace_root().join(name)).unwrap();
+    let here = read("Cargo.toml");
+    let python = read("host-tools/python/Cargo.toml");
+    let locked = read("host-tools/python/Cargo.lock");
+    let is_used = |line: &&str| {
+        let name = line.split(' ').next().unwrap_or_default();
+        name.contains('*') || locked.contains(&format!("name = \"{name}\"\n"))
+    };
+    let expected: BTreeSet<&str> = package_profiles(&here)
+        .into_iter()
+        .filter(is_used)
+        .collect();
+    assert!(expected.len() > 20, "{expected:?}");
+    assert_eq!(package_profiles(&python), expected);
+}
+
 /// Asserts which siblings of made-up sources, each a module's path and its text, form circles.
 #[track_caller]
 fn assert_circles(sources: &[(&str, &str)], expected: &[(&str, &str)]) {

@@ -22,6 +22,7 @@ use crate::operator::{Goal, HostIdentity, Operator, OperatorError, Tensioning};
 use crate::transport::Transport;
 use crate::transport::emulated::{EmulatedLine, EmulatedTransport};
 use leg_base::failure::Failure;
+use leg_base::timed_path::{PathRow, TimedPath};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
@@ -178,14 +179,42 @@ fn a_leg_that_sags_does_not_rise_by_a_hold() {
 /// Somebody has left its load out, and it would be held in the place of keeping station.
 #[test]
 fn a_leg_that_is_moved_compensates_again() {
+    type Work = fn(&mut Operator) -> Result<Telemetry<f32>, OperatorError>;
+    let works: [(&str, Work); 5] = [
+        ("move", |operator| operator.reach(&lean(5.0))),
+        ("another move", |operator| operator.reach(&lean(10.0))),
+        ("follow", |operator| {
+            let rows = [10.0, 11.0, 12.0];
+            let rows = rows.map(|tilt_deg| PathRow::from_angles(0.2 * tilt_deg, 90.0, tilt_deg));
+            operator.follow_whole(&TimedPath::new(&rows), Duration::from_millis(200))
+        }),
+        ("stiffness", |operator| operator.reach(&stiffness(55.0))),
+        ("hold", |operator| operator.reach(&Goal::default())),
+    ];
     let leg = hanging_leg();
     let mut operator = host(&leg, 1);
-    for tilt_deg in [5.0, 10.0] {
+    // What becomes of a leg that was left to itself after that tells whether it compensates.
+    let follow_commands = |operator: &mut Operator| {
+        operator.command(Command::Clear).unwrap();
+        if telemetry(operator).state != State::Active {
+            operator.command(Command::Arm).unwrap();
+        }
+        for _ in 0..5 {
+            operator.pause(Duration::from_millis(40)).unwrap();
+            operator.command(Command::KeepAlive).unwrap();
+        }
+    };
+    let left = |operator: &mut Operator| {
+        operator.command(Command::KeepStation).unwrap();
+        telemetry(operator).state
+    };
+    for (what, work) in works {
+        follow_commands(&mut operator);
         let left_out = Command::Compensation(Compensation::Off);
-        operator.command(Command::Arm).unwrap();
         operator.command(left_out).unwrap();
-        operator.stop().unwrap();
-        operator.reach(&lean(tilt_deg)).unwrap();
-        assert_eq!(telemetry(&mut operator).state, State::KeepingStation);
+        assert_eq!(left(&mut operator), State::Held, "before {what}");
+        work(&mut operator).unwrap();
+        follow_commands(&mut operator);
+        assert_eq!(left(&mut operator), State::KeepingStation, "{what}");
     }
 }
