@@ -30,7 +30,7 @@ done
 if [ ${#beside[@]} -eq 0 ]; then
     rustup target list --installed | grep -q '^wasm32-unknown-unknown$' || rustup target add wasm32-unknown-unknown
     cargo test --locked --no-default-features --lib
-    cargo run --release --locked --package leg-window-export -- "$page"
+    cargo run --locked --package leg-window-export -- "$page"
 fi
 if [ -z "${LEG:-}" ]; then
     (cd ../.. && cargo build --locked --bin leg)

@@ -193,16 +193,16 @@ fn both_commands_share_the_build_of_the_dependencies() {
     assert!(again.is_empty(), "{again:#?}");
 }
 
-/// The lines that a manifest has on how each package is compiled for the development profile.
-fn package_profiles(manifest: &str) -> BTreeSet<&str> {
+/// The lines of a manifest's section, but comments.
+fn section<'a>(manifest: &'a str, heading: &str) -> BTreeSet<&'a str> {
     let lines = manifest.lines();
-    let lines = lines.skip_while(|line| *line != "[profile.dev.package]");
+    let lines = lines.skip_while(|line| *line != heading);
     let lines = lines.skip(1).take_while(|line| !line.starts_with('['));
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
     lines.collect()
 }
 
-/// Else a check of the package in the target folder of this workspace would compile all of its dependencies again.
+/// Else a check of the package in the target folder of this workspace compiles again what is there.
 #[test]
 fn the_python_package_is_checked_as_this_workspace_is() {
     let read = |name: &str| std::fs::read_to_string(workspace_root().join(name)).unwrap();
@@ -213,12 +213,17 @@ fn the_python_package_is_checked_as_this_workspace_is() {
         let name = line.split(' ').next().unwrap_or_default();
         name.contains('*') || locked.contains(&format!("name = \"{name}\"\n"))
     };
-    let expected: BTreeSet<&str> = package_profiles(&here)
+    let heading = "[profile.dev.package]";
+    let expected: BTreeSet<&str> = section(&here, heading)
         .into_iter()
         .filter(is_used)
         .collect();
     assert!(expected.len() > 20, "{expected:?}");
-    assert_eq!(package_profiles(&python), expected);
+    assert_eq!(section(&python, heading), expected);
+    let heading = "[profile.dev]";
+    let expected = section(&here, heading);
+    assert!(expected.len() > 1, "{expected:?}");
+    assert_eq!(section(&python, heading), expected);
 }
 
 /// Asserts which siblings of made-up sources, each a module's path and its text, form circles.

@@ -54,7 +54,7 @@ pub fn export(directory: &Path, report: &mut dyn FnMut(&str)) -> Result<PathBuf,
     let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(program);
     command
-        .args(["run", "--release", "--locked", "--manifest-path", MANIFEST])
+        .args(["run", "--locked", "--manifest-path", MANIFEST])
         .args(["--package", "leg-window-export", "--"])
         .arg(&directory)
         .current_dir(&root)

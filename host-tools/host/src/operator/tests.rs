@@ -176,16 +176,16 @@ fn a_leg_that_sags_does_not_rise_by_a_hold() {
     assert!(moved_mm < 0.3, "{moved_mm} mm");
 }
 
-/// Somebody has left its load out, and it would be held in the place of keeping station.
+/// Somebody has left its load out; else it would be held in the place of keeping station.
 #[test]
-fn a_leg_that_is_moved_compensates_again() {
+fn every_command_that_makes_a_leg_active_compensates_again() {
     type Work = fn(&mut Operator) -> Result<Telemetry<f32>, OperatorError>;
     let works: [(&str, Work); 5] = [
         ("move", |operator| operator.reach(&lean(5.0))),
         ("another move", |operator| operator.reach(&lean(10.0))),
         ("follow", |operator| {
-            let rows = [10.0, 11.0, 12.0];
-            let rows = rows.map(|tilt_deg| PathRow::from_angles(0.2 * tilt_deg, 90.0, tilt_deg));
+            let rows = [(0.0, 10.0), (0.2, 11.0), (0.4, 12.0)];
+            let rows = rows.map(|(time_s, tilt_deg)| PathRow::from_angles(time_s, 90.0, tilt_deg));
             operator.follow_whole(&TimedPath::new(&rows), Duration::from_millis(200))
         }),
         ("stiffness", |operator| operator.reach(&stiffness(55.0))),
@@ -193,7 +193,6 @@ fn a_leg_that_is_moved_compensates_again() {
     ];
     let leg = hanging_leg();
     let mut operator = host(&leg, 1);
-    // What becomes of a leg that was left to itself after that tells whether it compensates.
     let follow_commands = |operator: &mut Operator| {
         operator.command(Command::Clear).unwrap();
         if telemetry(operator).state != State::Active {
@@ -204,7 +203,8 @@ fn a_leg_that_is_moved_compensates_again() {
             operator.command(Command::KeepAlive).unwrap();
         }
     };
-    let left = |operator: &mut Operator| {
+    // A leg that compensates keeps station once it is left; another is held.
+    let state_once_left = |operator: &mut Operator| {
         operator.command(Command::KeepStation).unwrap();
         telemetry(operator).state
     };
@@ -212,9 +212,13 @@ fn a_leg_that_is_moved_compensates_again() {
         follow_commands(&mut operator);
         let left_out = Command::Compensation(Compensation::Off);
         operator.command(left_out).unwrap();
-        assert_eq!(left(&mut operator), State::Held, "before {what}");
+        assert_eq!(state_once_left(&mut operator), State::Held, "before {what}");
         work(&mut operator).unwrap();
         follow_commands(&mut operator);
-        assert_eq!(left(&mut operator), State::KeepingStation, "{what}");
+        assert_eq!(
+            state_once_left(&mut operator),
+            State::KeepingStation,
+            "{what}"
+        );
     }
 }

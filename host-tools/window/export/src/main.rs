@@ -1,5 +1,5 @@
 //! Writes the window as one page that runs in a browser alone, from any web server or from disk:
-//! `cargo run --release --package leg-window-export -- DIR`.
+//! `cargo run --package leg-window-export -- DIR`.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -22,7 +22,7 @@ const PROGRAM_PLACE: &str = "/* program */";
 fn main() -> ExitCode {
     let Some(directory) = std::env::args_os().nth(1).map(PathBuf::from) else {
         eprintln!(
-            "error: no directory is given\nhelp: cargo run --release --package leg-window-export -- DIR"
+            "error: no directory is given\nhelp: cargo run --package leg-window-export -- DIR"
         );
         return ExitCode::from(2);
     };

@@ -68,10 +68,10 @@ fn a_motor_pulls_the_slower_the_nearer_its_tension_is_to_the_maximum_and_pays_ou
             lowest_m: -1.0,
         });
         let fastest_v = f64::from(servo.back_emf_v_s_per_m) * fastest_m_per_s;
-        let led_part = SUPPLY_V * duty / fastest_v;
+        let duty_part = SUPPLY_V * duty / fastest_v;
         assert!(
-            (led_part - speed_part).abs() < 1e-6,
-            "{room_part} of the band left: {led_part}"
+            (duty_part - speed_part).abs() < 1e-6,
+            "{room_part} of the band left: {duty_part} of the duty at full speed"
         );
     }
 }
