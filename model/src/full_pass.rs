@@ -97,7 +97,8 @@ pub fn full_pass<T: Scalar, const N: usize>(
 /// let plane = FreePlane::torsion_free(&leaning);
 /// let states = TendonStates::new(Vector3::repeat(70.0), Vector3::repeat(9.945e4))?;
 /// let pass = full_pass_in_plane(&rig, &leaning, &plane, &Load::new(&rig, 1.0)?, &states);
-/// let sag_m = pass.deflection?.tip_displacement.norm();
+/// let moved_m = pass.deflection?.tip_displacement;
+/// let sag_m = moved_m.dot(&moved_m).sqrt();
 /// assert!((1e-3..5e-3).contains(&sag_m));
 /// # Ok::<(), leg_model::Error>(())
 /// ```

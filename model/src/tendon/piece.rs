@@ -92,6 +92,10 @@ impl<T: Scalar> Piece<T> {
         for _ in 0..NEWTON_STEPS_MAX {
             if !(tension > low && tension < high) {
                 tension = T::HALF * (low + high);
+                // Two neighbours, between which rounding would have it go to and fro.
+                if !(tension > low && tension < high) {
+                    break;
+                }
             }
             let error = self.elongation_at(tension) - elongation;
             if error > T::zero() {

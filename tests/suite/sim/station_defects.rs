@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::station_stand::{Excursion, faults, keeping, paper, pass};
+use super::station_stand::{Excursion, armed, faults, keeping, paper, pass};
 use crate::common::require_said;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
@@ -72,6 +72,25 @@ fn a_sensor_that_reads_wrong_ends_it_in_hold_or_moves_nothing() {
             fault.is_none_or(|fault| faults(&bench).has(fault)),
             "{defect:?}"
         );
+    }
+}
+
+/// A cell that drifts to the maximum tension has the leg lower its pretension: the other tendons change by more than the cell, as they would by a
+/// load, and may stretch otherwise than by their curves. It is found all the same, whether the leg keeps station or follows.
+#[test]
+fn a_cell_that_drifts_to_the_maximum_tension_is_found() {
+    const FOUND_S: f64 = 6.0;
+    let mut rig = paper();
+    rig.pretension_n = 94.0;
+    let mut keeping = keeping(&rig, [132.0, 30.0], 1.37, 32);
+    let mut following = armed(&rig, [132.0, 30.0], 1.37, 33);
+    for bench in [&mut keeping, &mut following] {
+        let home_m = bench.truth.tip_m;
+        bench.plant().set_defect(Defect::CellDrifting(1), true);
+        let found = Excursion::new(bench, home_m, FOUND_S);
+        assert!(found.largest_mm < 1.4, "{found:?}");
+        assert_eq!(bench.state(), State::Held);
+        assert!(faults(bench).has(Fault::Residual), "{:?}", faults(bench));
     }
 }
 

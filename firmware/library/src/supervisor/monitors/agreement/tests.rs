@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Agreement, CURVE_PART, ErrorGrowth, FAR_CYCLES, LengthError, SETTLE_CYCLES};
+use super::{
+    Agreement, CURVE_PART, ErrorGrowth, FAR_CYCLES, KEPT_PART, LengthError, SETTLE_CYCLES,
+};
 use crate::control::CYCLE_S;
 use crate::settings::Settings;
 use core::f64::consts::TAU;
@@ -124,6 +126,28 @@ fn a_load_is_no_lie() {
             error.mean_m += 0.8 * f64::from(CURVE_PART) * 2.0 / 3.0 * load_m;
         });
         assert_eq!(found_s, None, "{load_m}");
+    }
+}
+
+/// What tendons stretch otherwise than by their curves stays allowed to a part of it: over seconds they may be off by less than at once.
+#[test]
+fn what_changes_slowly_is_explained_to_a_part() {
+    let found = |growth: &ErrorGrowth, part: f64| {
+        let mut leg = Leg::taut();
+        let begun_m = leg.error.mean_m;
+        // A millimetre in ten seconds, of every tendon.
+        (1..=20_000).any(|cycle| {
+            let stretched_m = 5e-8 * f64::from(cycle);
+            leg.error.elongations_m = [ELONGATION_M - stretched_m; 3];
+            leg.error.mean_m = begun_m + part * stretched_m;
+            leg.agreement.watch(&leg.error, growth);
+            !leg.agreement.agree()
+        })
+    };
+    let kept = f64::from(KEPT_PART);
+    for growth in [&ErrorGrowth::RESTING, &ErrorGrowth::STANDING] {
+        assert!(!found(growth, kept));
+        assert!(found(growth, 1.5 * kept));
     }
 }
 
