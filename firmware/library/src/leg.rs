@@ -294,16 +294,20 @@ impl<T: Scalar> Leg<T> {
     fn watch_agreement(&mut self) {
         let estimate = self.shared.estimate.as_ref();
         let error = estimate.and_then(|estimate| estimate.length_error.as_ref());
-        let limited = self.shared.target.is_some_and(|target| target.limited);
+        let wish_n = self.shared.pretension.pretension_n();
+        let target = self.shared.target.as_ref();
+        let capped = target.is_some_and(|target| target.is_capped_below(wish_n));
         let growth = match (&self.mode, error) {
             (Mode::Active(active), Some(_)) if active.tensioned => {
                 if active.stretch == StretchSearch::Scaled {
                     return self.agreement.end();
                 } else if !active.stretch.is_over() {
                     &ErrorGrowth::TENSIONING
+                } else if active.station.kept().is_some() {
+                    &ErrorGrowth::STANDING
                 } else if active.has_set_out() {
                     &ErrorGrowth::MOVING
-                } else if active.station.kept().is_some() || limited {
+                } else if capped {
                     &ErrorGrowth::STANDING
                 } else {
                     &ErrorGrowth::RESTING

@@ -54,6 +54,12 @@ impl<T: Scalar> Target<T> {
         below && self.distribution.feasible()
     }
 
+    /// Whether the maximum tension holds the pretension below a wish, N.
+    #[inline(always)]
+    pub fn is_capped_below(&self, wish_n: T) -> bool {
+        wish_n > self.pretension_n && self.pretension_n >= self.distribution.pretension_max
+    }
+
     /// Whether the bounds leave a range of pretensions that the noise of the load does not close.
     #[inline(always)]
     pub fn has_room(&self) -> bool {

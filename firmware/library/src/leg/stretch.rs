@@ -143,10 +143,10 @@ fn progress<T: Scalar>(shared: &Shared<T>) -> Way {
     let Some(target) = &shared.target else {
         return Way::Open;
     };
-    let missing_n = shared.pretension.pretension_n() - target.pretension_n;
-    if missing_n.abs() <= T::from(NEAR_N) {
+    let wish_n = shared.pretension.pretension_n();
+    if (wish_n - target.pretension_n).abs() <= T::from(NEAR_N) {
         Way::There
-    } else if missing_n > T::zero() && target.pretension_n >= target.distribution.pretension_max {
+    } else if target.is_capped_below(wish_n) {
         Way::Blocked
     } else {
         Way::Open
