@@ -294,9 +294,11 @@ impl<T: Scalar> Leg<T> {
     fn watch_agreement(&mut self) {
         let estimate = self.shared.estimate.as_ref();
         let error = estimate.and_then(|estimate| estimate.length_error.as_ref());
-        let wish_n = self.shared.pretension.pretension_n();
-        let target = self.shared.target.as_ref();
-        let capped = target.is_some_and(|target| target.is_capped_below(wish_n));
+        let is_capped = || {
+            let wish_n = self.shared.pretension.pretension_n();
+            let target = self.shared.target.as_ref();
+            target.is_some_and(|target| target.is_capped_below(wish_n))
+        };
         let growth = match (&self.mode, error) {
             (Mode::Active(active), Some(_)) if active.tensioned => {
                 if active.stretch == StretchSearch::Scaled {
@@ -307,7 +309,7 @@ impl<T: Scalar> Leg<T> {
                     &ErrorGrowth::STANDING
                 } else if active.has_set_out() {
                     &ErrorGrowth::MOVING
-                } else if capped {
+                } else if is_capped() {
                     &ErrorGrowth::STANDING
                 } else {
                     &ErrorGrowth::RESTING
