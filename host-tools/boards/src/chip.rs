@@ -20,8 +20,7 @@ use leg_firmware_bench::protocol::{Refusal, Reply, Request, TickRequest};
 use leg_sim::link::{InProcess, Link, LinkError};
 pub use running::LATENCY_CYCLES_MAX;
 use running::Running;
-pub use settings_page::PLACE as SETTINGS_PLACE;
-use settings_page::Page;
+pub use settings_page::{PLACE as SETTINGS_PLACE, Page as SettingsPage, page as settings_page};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -145,17 +144,17 @@ impl ChipSession {
     }
 
     /// The settings that the board will use, what its flash holds, and whether they are others than those.
-    fn flash(&self, asked: &Settings) -> Result<(Settings, Page, bool), LinkError> {
+    fn flash(&self, asked: &Settings) -> Result<(Settings, SettingsPage, bool), LinkError> {
         let refused = |sentence: &str| LinkError::Chip(sentence.into());
         let Some(bytes) = &self.kept else {
             let settings = asked.unhomed();
-            let page = settings_page::page(&settings)
+            let page = settings_page(&settings)
                 .ok_or_else(|| refused("the settings do not fit into their page"))?;
             return Ok((settings, page, false));
         };
         let address = settings_page::PLACE.start;
         let bytes = bytes.clone();
-        let page = Page { address, bytes };
+        let page = SettingsPage { address, bytes };
         if let Some(settings) = settings_page::kept(&page.bytes) {
             return Ok((settings.unhomed(), page, false));
         }

@@ -3,10 +3,10 @@
 
 use crate::common::chip::{
     MS, Outcome, carry_out, driving, findings, identity, identity_after, image, reply,
-    reset_within, send, settings, started, started_with, telemetry,
+    reset_within, send, settings, started, started_with, telemetry, ticked,
 };
 use crate::common::chip_patches::{GUARD, guard};
-use leg_boards::chip::SETTINGS_PLACE;
+use leg_boards::chip::{ChipSession, SETTINGS_PLACE, settings_page};
 use leg_boards::image::FirmwareImage;
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest, ResetCause};
@@ -286,6 +286,36 @@ fn a_held_leg_is_not_driven_after_a_clear_and_a_reset() -> Outcome {
     stays_off(chip, 20 * MS);
     assert_eq!(telemetry(chip)?.state, State::Disarmed);
     assert_eq!(findings(chip), [""; 0]);
+    Ok(())
+}
+
+/// A zero among the settings that are kept, as no host of this version writes, holds for no start: the leg has to be homed.
+#[test]
+fn a_zero_that_is_kept_is_forgotten_at_each_start() -> Outcome {
+    let mut homed = Settings::table_1().ok_or("no built-in settings")?;
+    for axis in &mut homed.axes {
+        axis.unstretched_at_zero_m = Some(0.0343);
+    }
+    homed.limits.command_time_s *= 2.0;
+    let page = settings_page(&homed).ok_or("no page")?;
+    let session = ChipSession::open(&image(FirmwareImage::Stm32g474)?)?;
+    let mut session = ticked(session.with_flash(&page.bytes), 10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    for flag in [
+        ResetFlag::Pin,
+        ResetFlag::BrownOut,
+        ResetFlag::IndependentWatchdog,
+    ] {
+        chip.reset(flag);
+        identity_after(chip)?;
+        let command = Command::Arm;
+        let arm = HostRequest::Command { host: 1, command };
+        let not_homed = HostRefusal::Command(CommandRefusal::NotHomed);
+        assert_eq!(refusal(chip, &arm)?, not_homed, "{flag:?}");
+        assert!(!telemetry(chip)?.homed, "{flag:?}");
+        // They were read.
+        assert_eq!(settings(chip)?, homed.unhomed());
+    }
     Ok(())
 }
 

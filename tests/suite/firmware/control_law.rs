@@ -174,22 +174,27 @@ fn homing_gives_up_above_its_current() {
 
 #[test]
 fn homing_gives_way_above_its_ceiling_and_gives_up_at_twice_that() {
-    let mut bench = Bench::new(None);
-    assert_eq!(bench.obey(Command::Home), Ok(()));
-    // Let out, tared, and the first tendon half taken up.
-    bench.run(7000);
-    let f_max_n = bench.settings.homing.f_max_n;
-    bench.tensions([f_max_n - 5.0, 0.0, 0.0]);
-    let below = bench.run(1);
-    bench.tensions([f_max_n + 5.0, 0.0, 0.0]);
-    let above = bench.run(1);
-    let telemetry = bench.leg.telemetry();
-    assert_eq!(telemetry.state, State::Homing, "{telemetry:?}");
-    assert!(below[0] >= 0.0 && above[0] < -0.1, "{below:?} {above:?}");
-    bench.tensions([2.0 * f_max_n + 1.0, 0.0, 0.0]);
-    bench.run(1);
-    assert!(bench.has(Fault::HomingFailed));
-    assert_eq!(bench.leg.state(), State::RampingDown);
+    for tendon in 0..3 {
+        let mut bench = Bench::new(None);
+        assert_eq!(bench.obey(Command::Home), Ok(()));
+        // Let out, tared, and the first tendon half taken up.
+        bench.run(7000);
+        let f_max_n = bench.settings.homing.f_max_n;
+        let pulling =
+            |tension_n| std::array::from_fn(|i| if i == tendon { tension_n } else { 0.0 });
+        bench.tensions(pulling(f_max_n - 5.0));
+        let below = bench.run(1);
+        bench.tensions(pulling(f_max_n + 5.0));
+        let above = bench.run(1);
+        let telemetry = bench.leg.telemetry();
+        assert_eq!(telemetry.state, State::Homing, "{telemetry:?}");
+        let [below, above] = [below, above].map(|duty| duty[tendon]);
+        assert!(below >= 0.0 && above < -0.1, "{tendon}: {below} {above}");
+        bench.tensions(pulling(2.0 * f_max_n + 1.0));
+        bench.run(1);
+        assert!(bench.has(Fault::HomingFailed), "{tendon}");
+        assert_eq!(bench.leg.state(), State::RampingDown);
+    }
 }
 
 /// A host that falls silent is missed while the leg is homed as while it follows.
