@@ -14,7 +14,9 @@ pub const PLACE: Range<u32> = FLASH_START + REGION.start..FLASH_START + REGION.e
 /// Bytes of the flash from an address on.
 #[derive(Clone)]
 pub struct Page {
+    /// Of the first.
     pub address: u32,
+    /// From there on.
     pub bytes: Vec<u8>,
 }
 
