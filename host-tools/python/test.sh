@@ -1,19 +1,7 @@
 #!/usr/bin/env bash
 # Does what README.md says, and tests the package: from nothing but Rust and a C compiler, where apt may install Python.
-#
-#     test.sh          the package as it is installed
-#     test.sh --dev    the package as it is compiled for development, in the target folder of the workspace above, which
-#                      has most of it compiled already: what CI runs. The bits are the same.
 set -euo pipefail
 cd "$(dirname "$0")"
-case ${1:-} in
-    "") ;;
-    --dev)
-        CARGO_TARGET_DIR=$(realpath ../..)/target
-        export CARGO_TARGET_DIR MATURIN_PEP517_ARGS="--profile dev" LEG_RATES_PROFILE=dev
-        ;;
-    *) echo "test.sh: no such argument: $1; there is --dev" >&2 && exit 2 ;;
-esac
 
 # The build flags are those of .cargo/config.toml: a variable of the environment would replace them in silence.
 unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS

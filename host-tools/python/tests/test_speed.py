@@ -1,7 +1,6 @@
 """What Python adds to the time of the simulated leg and of the model, beside the same work in Rust alone."""
 
 import json
-import os
 import subprocess
 import time
 from pathlib import Path
@@ -16,9 +15,8 @@ AZIMUTHS, TILTS = 1000, 1001
 
 
 def in_rust(ticks, azimuths, tilts):
-    """What so many ticks and a map take in Rust alone, s; cargo builds what measures it, as the package was compiled."""
-    profile = os.environ.get("LEG_RATES_PROFILE", "release")
-    rates = ["cargo", "run", "--profile", profile, "--locked", "--quiet", "--package", "leg-rates", "--"]
+    """What so many ticks and a map take in Rust alone, s; cargo builds what measures it."""
+    rates = ["cargo", "run", "--release", "--locked", "--quiet", "--package", "leg-rates", "--"]
     ended = subprocess.run([*rates, *map(str, (ticks, azimuths, tilts))], cwd=PACKAGE, stdout=subprocess.PIPE, check=True)
     return json.loads(ended.stdout)
 
