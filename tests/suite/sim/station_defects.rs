@@ -4,6 +4,8 @@
 
 use super::station_stand::{Excursion, armed, faults, keeping, paper, pass};
 use crate::common::require_said;
+use leg_bench::stand::Stand;
+use leg_firmware::command::Command;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_sim::plant::Defect;
@@ -99,7 +101,8 @@ fn a_cell_that_drifts_to_the_maximum_tension_is_found() {
 #[test]
 fn a_cell_that_drifts_slowly_does_not_lead_the_leg_away() {
     const SLOW_MM: f64 = 0.2;
-    let [fast, slow] = [25, 250].map(drifted);
+    let [fast, slow] =
+        [25, 250].map(|every| drifted(keeping(&paper(), [30.0, 20.0], 1.0, 31), 0, every));
     assert_eq!(
         (fast.1, fast.2),
         (State::Held, FaultSet::single(Fault::Residual))
@@ -119,13 +122,35 @@ fn a_cell_that_drifts_slowly_does_not_lead_the_leg_away() {
     );
 }
 
+/// A leg that follows, and whose pretension the maximum tension limits, would lower it for such a cell, too, and learns as little.
+#[test]
+fn a_cell_that_drifts_slowly_at_the_maximum_tension_is_found() {
+    let mut rig = paper();
+    rig.pretension_n = 94.0;
+    let mut leg = armed(&rig, [132.0, 30.0], 1.37, 34);
+    leg.command(&Command::Pretension(105.0)).unwrap();
+    pass(&mut leg, 1.5);
+    let telemetry = leg.telemetry.unwrap();
+    assert!(telemetry.faults.has(Fault::Unreachable));
+    let [first_n, second_n, third_n] = telemetry.target_tensions_n;
+    assert!(second_n > first_n.max(third_n));
+    const LED_MM: f64 = 0.7;
+    const EVERY: u32 = 12;
+    let (led_mm, state, faults) = drifted(leg, 1, EVERY);
+    assert_eq!(state, State::Held);
+    assert!(faults.has(Fault::Residual), "{faults:?}");
+    assert!(led_mm < LED_MM, "{led_mm} mm");
+    let drift = 5.0 / f64::from(EVERY);
+    let words = format!("by less than {LED_MM} mm by one that drifts by {drift:.1} N/s");
+    require_said("firmware/SAFETY.md", &[words]);
+}
+
 /// How far the tip is led in a minute, mm, by a cell that drifts by 5 N/s for one tick of so many; what the leg does, and its faults.
-fn drifted(every: u32) -> (f64, State, FaultSet) {
-    let mut bench = keeping(&paper(), [30.0, 20.0], 1.0, 31);
+fn drifted(mut bench: Stand, cell: usize, every: u32) -> (f64, State, FaultSet) {
     let home_m = bench.truth.tip_m;
     let mut largest_mm = 0.0_f64;
     for _ in 0..60 * u32::from(TICK_HZ) / every {
-        let drifting = Defect::CellDrifting(0);
+        let drifting = Defect::CellDrifting(cell);
         bench.plant().set_defect(drifting, true);
         bench.tick().unwrap();
         bench.plant().set_defect(drifting, false);
