@@ -30,7 +30,7 @@ const CURVE_PART: f32 = 0.09;
 
 /// The same of a leg at rest once the elongations are forgotten. A leg that the maximum tension limits lowers its pretension for a cell that
 /// drifts up to it, and its other tendons change by up to three times the error of that cell: with 0.09 it followed some for 9.9 s, by up to
-/// 2.3 mm. Tuned: with 0.075 for both it followed some for 8.3 s, with 0.054 for 5.4 s (`a_cell_that_drifts_to_the_maximum_tension_is_found`). After
+/// 2.3 mm, and with this one of 4 500 for 8.7 s. Less for what changes at once takes a violent load for a lie (scenario `fault_over_tension`). After
 /// homing, the common factor of the tendons is known to 0.03 (`leg/stretch.rs`).
 const KEPT_PART: f32 = 0.054;
 
