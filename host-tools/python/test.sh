@@ -23,4 +23,5 @@ from_clone=$(blocks sh)
 test -s circle.png
 blocks python | .venv/bin/python -W error -
 .venv/bin/python -m mypy --strict python/tendon_leg examples
-.venv/bin/python -W error -m pytest -q
+# Most of them wait: for a leg that runs in real time, or for another process.
+.venv/bin/python -W error -m pytest -q -n $((2 * $(nproc)))

@@ -3,7 +3,7 @@
 use crate::time_charts::{self, POINTS_MAX, TimeChart, phase};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
-use leg_model_tools::plot::PlotError;
+use leg_plot::PlotError;
 use leg_sim::simulation::Sample;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,7 @@
 use leg_base::description;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
-use leg_model_tools::plot::{self, Chart, ChartLine, PlotError, Span};
+use leg_plot::{Chart, ChartLine, PlotError, Span};
 use std::path::{Path, PathBuf};
 
 /// A quantity of a sample, with its label; none where there is nothing to draw.
@@ -61,7 +61,7 @@ pub(crate) fn save<S>(
     if drawn.is_empty() {
         return Err(PlotError::Empty);
     }
-    let save = |(name, chart): &(&str, Chart)| plot::save(chart, &directory.join(name));
+    let save = |(name, chart): &(&str, Chart)| leg_plot::save(chart, &directory.join(name));
     drawn.iter().map(save).collect()
 }
 

@@ -1,4 +1,4 @@
-//! The computer's side of a leg: what `leg home`, `leg move`, `leg monitor`, `leg log` and `leg flash` do.
+//! The computer's side of a leg: what `leg home`, `leg move`, `leg log` and `leg flash` do.
 //!
 //! # Where to begin
 //! An [`operator::Operator`] introduces itself to a leg over a [`transport::Transport`] and commands it. The transport is
@@ -43,7 +43,7 @@
 //! | [`emulated_board`], [`pseudo_terminal`], [`tcp_port`] | an emulated leg behind a port, for other programs (`leg emulate`) |
 //! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |
 //! | [`signals`] | every signal of a leg, declared once |
-//! | [`leg_report`], [`sensor_report`], [`monitor`] | what people and machines are shown of a leg |
+//! | [`leg_report`], [`sensor_report`] | what people and machines are shown of a leg |
 //! | [`calibration`] | calibration by hand: a load cell by known weights |
 //! | [`tune`] | motors, play and swing of a leg, measured |
 //! | [`flash`] | writing the firmware by `probe-rs` |
@@ -54,7 +54,6 @@ pub mod cancel_flag;
 pub mod emulated_board;
 pub mod flash;
 pub mod leg_report;
-pub mod monitor;
 pub mod operator;
 pub mod path_reader;
 #[cfg(not(unix))]

@@ -9,9 +9,9 @@ use crate::progress;
 use leg_base::failure::Failure;
 use leg_boards::image;
 use leg_model_tools::map_csv;
-use leg_model_tools::plot::PlotError;
-use leg_model_tools::plot::field::{self, Layout};
 use leg_model_tools::workspace_map::{Grid, MapQuantity, WorkspaceMap};
+use leg_plot::PlotError;
+use leg_plot::field::{self, Layout, PlotField};
 use leg_rig::rig_file::RigFile;
 use report::{MapReport, QuantityExtremes};
 use std::path::PathBuf;
@@ -142,7 +142,7 @@ fn draw(args: &Args, rig: &RigFile, map: &WorkspaceMap) -> Result<Vec<PathBuf>, 
             rig.pretension_n,
             rig.support_name.word()
         );
-        let field = map.field(quantity, title);
+        let field = PlotField::workspace(map, quantity, title);
         for (layout, suffix) in [(Layout::Flat, "contour"), (Layout::Polar, "polar")] {
             let stem = directory.join(format!("{}_{suffix}", quantity.name()));
             let picture = field::save(&field, layout, &stem);

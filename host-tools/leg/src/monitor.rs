@@ -1,11 +1,17 @@
 //! `leg monitor`.
 
+mod bar;
 #[cfg(not(unix))]
 #[path = "monitor/events.rs"]
 mod keys;
 #[cfg(unix)]
 mod keys;
+mod screen;
 mod udp;
+mod view;
+
+#[cfg(test)]
+mod tests;
 
 use crate::connection::{LegArgs, Purpose};
 use crate::notices::version_text;
@@ -14,11 +20,12 @@ use crate::options::Options;
 use crate::output::{print, wall_time_s};
 use keys::Keys;
 use leg_base::failure::Failure;
-use leg_host::monitor::{MonitorView, draw};
 use leg_host::operator::{Operator, OperatorError};
+use screen::draw;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 use udp::Udp;
+use view::MonitorView;
 
 /// How often keys are polled.
 const KEY_TIME: Duration = Duration::from_millis(50);

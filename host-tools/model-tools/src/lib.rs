@@ -9,7 +9,6 @@
 //! | a tendon's curve from a tensile test | [`tensile::Fit`] | `leg curve` |
 //! | a MuJoCo model, a URDF robot | [`mjcf::Mjcf`], [`urdf::Urdf`] | `leg export` |
 //! | a picture of the leg | [`rig_drawing::svg`] | `leg rig draw` |
-//! | charts and maps as SVG, PNG and PDF | [`plot::Chart`], [`plot::field::PlotField`] | `leg run --plots`, `leg map` |
 //! | Eqs. (3–7) as they stand, to check the model by | [`plain_vectors`] | none: tests |
 //!
 //! All of them take a rig as `leg_rig` reads it; the numbers come from `leg_model`.
@@ -37,7 +36,6 @@ pub mod map_csv;
 pub mod mjcf;
 pub mod nonlinear;
 pub mod plain_vectors;
-pub mod plot;
 pub mod rig_drawing;
 pub mod tensile;
 pub mod urdf;

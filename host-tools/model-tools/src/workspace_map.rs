@@ -1,7 +1,6 @@
 //! The model over the whole workspace.
 
 mod cell;
-mod picture;
 mod quantity;
 mod statistics;
 
@@ -80,19 +79,15 @@ impl WorkspaceMap {
         let grid = self.grid;
         let poses = (0..grid.tilts)
             .flat_map(move |row| columns(grid, row).map(move |column| (row, column)));
-        poses.zip(&self.cells).map(move |((row, column), cell)| {
-            let tilt = tilt_deg(self.tilt_max_deg, grid, row);
-            (azimuth_deg(grid, column), tilt, cell)
-        })
+        poses
+            .zip(&self.cells)
+            .map(move |((row, column), cell)| (azimuth_deg(grid, column), self.tilt_deg(row), cell))
     }
 
-    /// The cell of a row and a column; of the vertical in every column of the first row.
-    fn cell(&self, row: u32, column: u32) -> &Result<Cell, Error> {
-        let before = |row: u32| row as usize * self.grid.azimuths as usize;
-        let index = row
-            .checked_sub(1)
-            .map_or(0, |row| 1 + before(row) + column as usize);
-        &self.cells[index]
+    /// The tilt of a row, degrees.
+    #[must_use]
+    pub fn tilt_deg(&self, row: u32) -> f64 {
+        tilt_deg(self.tilt_max_deg, self.grid, row)
     }
 }
 

@@ -5,8 +5,8 @@ use super::deviation::{AZIMUTH_DEG, Deviations, MAXIMA, deviations, tilts_deg};
 use super::tendon::PUBLISHED;
 use super::workspace::{PAYLOAD_KG, SPREAD_PERCENT, spread_at};
 use leg_model::{Elasticity, Error, Query, Tendon};
-use leg_model_tools::plot::{self, Chart, ChartLine, PlotError, field};
 use leg_model_tools::workspace_map::{Grid, MapQuantity, WorkspaceMap};
+use leg_plot::{Chart, ChartLine, PlotError, field};
 use leg_rig::rig_file::RigFile;
 use std::path::{Path, PathBuf};
 
@@ -35,7 +35,7 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
     let rig = RigFile::load(None).map_err(PaperError::from)?;
     let mut figures = Vec::new();
     for (name, chart, caption) in charts(&rig)? {
-        figures.push((plot::save(&chart, &directory.join(name))?, caption));
+        figures.push((leg_plot::save(&chart, &directory.join(name))?, caption));
     }
     let mut map = workspace_field(&rig)?;
     let maps = [
@@ -205,5 +205,9 @@ fn workspace_field(rig: &RigFile) -> Result<field::PlotField, Error> {
     let Query { tendons, .. } = super::deviation::constant(rig, 0.0, 0.0, PAYLOAD_KG)?;
     let rig = RigFile { tendons, ..*rig };
     let map = WorkspaceMap::compute(&rig, PAYLOAD_KG, grid, false, || ());
-    Ok(map.field(MapQuantity::Deviation, String::new()))
+    Ok(field::PlotField::workspace(
+        &map,
+        MapQuantity::Deviation,
+        String::new(),
+    ))
 }

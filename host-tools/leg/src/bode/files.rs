@@ -5,7 +5,7 @@ use crate::output::save_all;
 use leg_base::failure::Failure;
 use leg_bench::bode::{Feedback, Margin, MarginRow, ResponsePoint, Swept};
 use leg_boards::image;
-use leg_model_tools::plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
+use leg_plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 

@@ -5,7 +5,6 @@ use crate::output::{chart_line, not_saved};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_bench::sensitivity::{self, CELLS_PERCENT, CURVES_PERCENT, Sensitivity};
-use leg_model_tools::plot;
 use leg_rig::rig_file::RigFile;
 use leg_sim::scenario::Scenario;
 use std::path::Path;
@@ -30,7 +29,7 @@ pub(super) fn run(
     }
     let chart = sensitivity::chart(&scenario.title, &all);
     // What was found is told, whether it can be drawn or not.
-    let saved = plot::save(&chart, &directory.join("errors"))
+    let saved = leg_plot::save(&chart, &directory.join("errors"))
         .map_err(|error| not_saved("chart", directory, "--plots", &error));
     options.report(&all, || {
         let chart = saved.as_deref().map(chart_line).unwrap_or_default();

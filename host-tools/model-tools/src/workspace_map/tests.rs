@@ -6,10 +6,7 @@ mod work;
 
 pub(super) use work::count_evaluation;
 
-use super::picture::SHADES;
 use super::{Grid, MapQuantity, WorkspaceMap};
-use crate::plot::field::scale::room_px;
-use clap::ValueEnum;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
@@ -105,14 +102,4 @@ fn extremes_are_at_the_first_pose_that_has_them() {
     let [least, most] = map.extremes(MapQuantity::Deviation).unwrap();
     assert_eq!((least.azimuth_deg, least.tilt_deg), (0.0, 0.0));
     assert_eq!((most.azimuth_deg, most.tilt_deg), (0.0, 30.0));
-}
-
-#[test]
-fn heading_and_legend_of_every_map_fit_beside_it() {
-    let headings = MapQuantity::value_variants().iter();
-    let headings = headings.map(|quantity| (quantity.words(), false));
-    for (words, in_legend) in headings.chain(SHADES.map(|words| (words, true))) {
-        let room = room_px(words, in_legend);
-        assert!(room > 0, "{words}: {room} px");
-    }
 }

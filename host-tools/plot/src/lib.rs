@@ -1,4 +1,5 @@
-//! Line charts as SVG, PNG and PDF.
+//! Pictures as SVG, PNG and PDF: line charts ([`Chart`]), maps of the workspace ([`field::PlotField`]) and Bode plots
+//! ([`bode::BodePlot`]).
 
 pub mod bode;
 mod canvas;

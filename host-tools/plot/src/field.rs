@@ -5,7 +5,8 @@ mod contours;
 mod flat;
 mod layers;
 mod polar;
-pub(crate) mod scale;
+mod scale;
+mod workspace;
 
 use super::canvas::{self, Area, DrawResult, MARGIN, Painter, WIDTH, px, range};
 use super::error::PlotError;

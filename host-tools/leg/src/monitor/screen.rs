@@ -1,12 +1,12 @@
 //! The leg on a terminal.
 
-use super::MonitorView;
 use super::bar::bar;
-use crate::leg_report::{known_pose_words, pose_words};
+use super::view::MonitorView;
 use leg_base::description;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::{FaultSet, Reaction, State};
 use leg_firmware::telemetry::Telemetry;
+use leg_host::leg_report::{known_pose_words, pose_words};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout};
 use ratatui::style::{Color, Stylize};
@@ -17,7 +17,7 @@ use ratatui::widgets::{Block, Paragraph, Wrap};
 const BAR_LABEL_WIDTH: u16 = 16;
 
 /// Draws a leg on a whole screen.
-pub fn draw(frame: &mut Frame<'_>, view: &MonitorView) {
+pub(super) fn draw(frame: &mut Frame<'_>, view: &MonitorView) {
     let rows = [
         Constraint::Length(5),
         Constraint::Length(5),

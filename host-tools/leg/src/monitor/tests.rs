@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{MonitorView, draw};
+use super::screen::draw;
+use super::view::MonitorView;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;

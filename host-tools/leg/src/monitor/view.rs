@@ -1,14 +1,14 @@
 //! The leg at a time: its telemetry, and what follows from it.
 
-use crate::signals::{LegConstants, REPORT_SIGNALS, Report, json_object};
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
+use leg_host::signals::{LegConstants, REPORT_SIGNALS, Report, json_object};
 
 /// What is shown of a leg.
 #[derive(Clone, Debug)]
-pub struct MonitorView {
+pub(super) struct MonitorView {
     pub(super) title: String,
     pub(super) bounds_n: [f32; 2],
     leg: LegConstants,
@@ -19,7 +19,7 @@ pub struct MonitorView {
 
 impl MonitorView {
     /// A leg without telemetry yet; `title` names it.
-    pub fn new(title: &str, settings: &Settings) -> Self {
+    pub(super) fn new(title: &str, settings: &Settings) -> Self {
         Self {
             title: title.into(),
             bounds_n: [settings.f_min_n, settings.f_max_n],
@@ -31,7 +31,12 @@ impl MonitorView {
     }
 
     /// Takes new telemetry, received at a time of the day in s since 1970, and how many frames could not be read so far.
-    pub fn take(&mut self, telemetry: &Telemetry<f32>, wall_time_s: f64, damaged_frames: u64) {
+    pub(super) fn take(
+        &mut self,
+        telemetry: &Telemetry<f32>,
+        wall_time_s: f64,
+        damaged_frames: u64,
+    ) {
         let report = Report::new(telemetry, &self.leg);
         self.telemetry = Some(*telemetry);
         self.report = Some(report.received(wall_time_s, damaged_frames));
@@ -39,7 +44,7 @@ impl MonitorView {
     }
 
     /// A line of JSON, the signals of a report; none before the first telemetry.
-    pub fn json(&self) -> Result<Option<String>, Failure> {
+    pub(super) fn json(&self) -> Result<Option<String>, Failure> {
         let report = self.report.as_ref();
         let line = report.map(|report| to_line(&json_object(REPORT_SIGNALS, report)));
         line.transpose()
