@@ -18,7 +18,7 @@ pub struct Cell {
     pub pretension_max_n: f64,
     /// How far the rig's pretension is inside that range, N; negative outside.
     #[serde(skip)]
-    pub(super) pretension_room_n: f64,
+    pub pretension_room_n: f64,
     /// How far the tensions at the rig's pretension stay from their bounds, N; negative beyond them. None where nothing
     /// holds the leg at that pretension.
     pub margin_n: Option<f64>,
