@@ -22,7 +22,7 @@ const LAYERS: [&[&str]; 11] = [
     &["leg-tests"],
     &["leg-cli"],
     &["leg-bench", "leg-host"],
-    &["leg-boards", "leg-recording", "leg-plot"],
+    &["leg-boards", "leg-recording"],
     &["stm32g474-emulator"],
     &["leg-sim"],
     &["leg-model-tools"],

@@ -4,7 +4,8 @@
 //! on the host. [`cost`] counts instructions on an emulated board, [`image_budget`] bounds flash, RAM and stack of an
 //! image from its ELF file, and [`paper`] compares the model with the published numbers. [`strikes`] lets faults
 //! strike the simulated leg in every state, [`moves`] judges how it moves, and [`bode`] measures the margins of its
-//! loops; all three on a [`stand`]. [`sensitivity`] and [`run_charts`] serve `leg run`.
+//! loops; all three on a [`stand`]. [`sensitivity`] and [`run_charts`] serve `leg run`, and [`plot`]
+//! draws what all of them and the command line show.
 //!
 //! ```
 //! use leg_bench::{check, precision};
@@ -26,6 +27,7 @@ mod draw;
 pub mod image_budget;
 pub mod moves;
 pub mod paper;
+pub mod plot;
 pub mod precision;
 pub mod recorder_charts;
 pub mod run_charts;

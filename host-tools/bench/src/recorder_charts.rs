@@ -1,11 +1,11 @@
 //! Charts of what a board's recorder kept.
 
+use crate::plot::PlotError;
 use crate::time_charts::{self, TimeChart};
 use leg_base::description;
 use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::tick_s;
 use leg_firmware::settings::RecordedSignal;
-use leg_plot::PlotError;
 use std::path::{Path, PathBuf};
 
 /// One curve for each tendon or motor, in so many units of the signal.

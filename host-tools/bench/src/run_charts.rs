@@ -1,9 +1,9 @@
 //! The charts of a simulation: the tip, the tensions and the stiffness over time; and those of a leg's telemetry.
 
+use crate::plot::PlotError;
 use crate::time_charts::{self, POINTS_MAX, TimeChart, phase};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
-use leg_plot::PlotError;
 use leg_sim::simulation::Sample;
 use std::path::{Path, PathBuf};
 

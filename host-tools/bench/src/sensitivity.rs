@@ -1,7 +1,7 @@
 //! How far the tip is from its target when load cells and tendon curves are off.
 
+use crate::plot::{Chart, ChartLine};
 use leg_firmware::supervisor::{Fault, Reaction};
-use leg_plot::{Chart, ChartLine};
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
 use leg_sim::scenario::{Measurand, Scenario};

@@ -1,9 +1,9 @@
 //! Charts of quantities over time, from one list of samples, over the phases of the leg.
 
+use crate::plot::{Chart, ChartLine, PlotError, Span};
 use leg_base::description;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
-use leg_plot::{Chart, ChartLine, PlotError, Span};
 use std::path::{Path, PathBuf};
 
 /// A quantity of a sample, with its label; none where there is nothing to draw.
@@ -61,7 +61,7 @@ pub(crate) fn save<S>(
     if drawn.is_empty() {
         return Err(PlotError::Empty);
     }
-    let save = |(name, chart): &(&str, Chart)| leg_plot::save(chart, &directory.join(name));
+    let save = |(name, chart): &(&str, Chart)| crate::plot::save(chart, &directory.join(name));
     drawn.iter().map(save).collect()
 }
 

@@ -167,6 +167,8 @@ fn with_zero(argument: OsString) -> OsString {
 /// Runs the command that this process's arguments name, and prints its error on standard error.
 #[must_use]
 pub fn main() -> ExitCode {
+    #[cfg(unix)]
+    survive_file_size_limit();
     let arguments = std::env::args_os().map(with_zero);
     let matches = command().try_get_matches_from(arguments);
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
@@ -180,6 +182,15 @@ pub fn main() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// Where a file would become larger than `ulimit -f` allows, the write fails, and its error names the file: the signal alone would end the
+/// process without a word.
+#[cfg(unix)]
+fn survive_file_size_limit() {
+    let signal = rustix::process::Signal::XFSZ.as_raw();
+    // What cannot be caught ends the process as before.
+    let _ = signal_hook::flag::register(signal, std::sync::Arc::default());
 }
 
 fn run(command: &Command, options: Options) -> Result<(), Failure> {

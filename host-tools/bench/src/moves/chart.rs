@@ -1,7 +1,7 @@
 //! A move with the swing of the leg braked, beside the same move without the brake.
 
 use super::{Moved, make};
-use leg_plot::{Chart, ChartLine, PlotError};
+use crate::plot::{Chart, ChartLine, PlotError};
 use std::path::{Path, PathBuf};
 
 /// More points than this do not show in a chart.
@@ -31,7 +31,7 @@ pub fn save_comparison(moved: &Moved, directory: &Path) -> Result<PathBuf, PlotE
         ],
         ..Chart::default()
     };
-    leg_plot::save(&chart, &directory.join("move"))
+    crate::plot::save(&chart, &directory.join("move"))
 }
 
 fn step(moved: &Moved) -> usize {

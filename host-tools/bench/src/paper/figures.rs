@@ -4,9 +4,9 @@ use super::PaperError;
 use super::deviation::{AZIMUTH_DEG, Deviations, MAXIMA, deviations, tilts_deg};
 use super::tendon::PUBLISHED;
 use super::workspace::{PAYLOAD_KG, SPREAD_PERCENT, spread_at};
+use crate::plot::{Chart, ChartLine, PlotError, field};
 use leg_model::{Elasticity, Error, Query, Tendon};
 use leg_model_tools::workspace_map::{Grid, MapQuantity, WorkspaceMap};
-use leg_plot::{Chart, ChartLine, PlotError, field};
 use leg_rig::rig_file::RigFile;
 use std::path::{Path, PathBuf};
 
@@ -35,7 +35,7 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
     let rig = RigFile::load(None).map_err(PaperError::from)?;
     let mut figures = Vec::new();
     for (name, chart, caption) in charts(&rig)? {
-        figures.push((leg_plot::save(&chart, &directory.join(name))?, caption));
+        figures.push((crate::plot::save(&chart, &directory.join(name))?, caption));
     }
     let mut map = workspace_field(&rig)?;
     let maps = [

@@ -4,8 +4,8 @@ use super::report::unit;
 use crate::output::save_all;
 use leg_base::failure::Failure;
 use leg_bench::bode::{Feedback, Margin, MarginRow, ResponsePoint, Swept};
+use leg_bench::plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
 use leg_boards::image;
-use leg_plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 

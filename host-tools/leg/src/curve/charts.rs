@@ -1,8 +1,8 @@
 //! The charts of `leg curve`, as the paper's Fig. 6 has them.
 
+use leg_bench::plot::{Chart, ChartLine, PlotError};
 use leg_model::{Elasticity, TendonCurve};
 use leg_model_tools::tensile::{Fit, TestRow};
-use leg_plot::{Chart, ChartLine, PlotError};
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -90,5 +90,5 @@ fn save((name, y_title, points, marks): Panel, directory: &Path) -> Result<PathB
         marks_label: "measured".into(),
         ..Chart::default()
     };
-    leg_plot::save(&chart, &directory.join(name))
+    leg_bench::plot::save(&chart, &directory.join(name))
 }

@@ -29,7 +29,7 @@ pub(super) fn run(
     }
     let chart = sensitivity::chart(&scenario.title, &all);
     // What was found is told, whether it can be drawn or not.
-    let saved = leg_plot::save(&chart, &directory.join("errors"))
+    let saved = leg_bench::plot::save(&chart, &directory.join("errors"))
         .map_err(|error| not_saved("chart", directory, "--plots", &error));
     options.report(&all, || {
         let chart = saved.as_deref().map(chart_line).unwrap_or_default();

@@ -2,8 +2,8 @@
 
 use crate::output::save_all;
 use leg_base::failure::Failure;
-use leg_plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
-use leg_plot::{Chart, ChartLine};
+use leg_bench::plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
+use leg_bench::plot::{Chart, ChartLine};
 use leg_rig::loop_response::{Margins, ResponsePoint};
 use leg_rig::rig_file::RigFile;
 use leg_rig::tune::{Jogged, MeasuredMotor, MeasuredServo, Swing, Swings, configured_servo};
@@ -29,7 +29,7 @@ pub(super) fn save(
     }
     let draw = |staging: &Path| {
         for (name, chart) in &charts {
-            leg_plot::save(chart, &staging.join(name))?;
+            leg_bench::plot::save(chart, &staging.join(name))?;
         }
         if let Some(measured) = &motor.servo {
             let plot = servo(motor.motor, measured, rig);

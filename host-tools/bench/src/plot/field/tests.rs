@@ -2,7 +2,7 @@
 
 use super::layers::{BORDER, EXTERIOR, Layer, NO_RESULT, layers};
 use super::{Layout, PlotField, PoseSample, save};
-use crate::PlotError;
+use crate::plot::PlotError;
 use plotters::style::RGBColor;
 
 /// Tilt itself as the quantity, with room for it up to 24° at azimuths from 180° to 330°; no result near 355°. What has

@@ -3,7 +3,7 @@
 use super::bands::Bands;
 use super::layers::{Layer, layers};
 use super::{LINE, PlotField};
-use crate::canvas::{Area, DrawResult, LABEL, THIN, offset_px};
+use crate::plot::canvas::{Area, DrawResult, LABEL, THIN, offset_px};
 use leg_base::angles;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

@@ -3,7 +3,7 @@
 use super::bands::Bands;
 use super::layers::{Layer, layers};
 use super::{LINE, PlotField};
-use crate::canvas::{AXIS_TITLE, Area, DrawResult, LABEL, MARGIN, THIN, TICK, px};
+use crate::plot::canvas::{AXIS_TITLE, Area, DrawResult, LABEL, MARGIN, THIN, TICK, px};
 use plotters::prelude::*;
 
 pub(super) fn paint<B: DrawingBackend>(

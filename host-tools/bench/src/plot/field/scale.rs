@@ -3,7 +3,7 @@
 use super::bands::Bands;
 use super::layers::{BORDER, EXTERIOR, NO_RESULT};
 use super::{PlotField, PoseSample};
-use crate::canvas::{Area, DrawResult, LABEL, THIN, offset_px, px};
+use crate::plot::canvas::{Area, DrawResult, LABEL, THIN, offset_px, px};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -88,7 +88,7 @@ fn text<B: DrawingBackend>(area: &Area<B>) -> TextStyle<'static> {
 /// How much room a text leaves beside the map, px: above the scale, or in its legend.
 #[cfg(test)]
 pub(super) fn room_px(words: &str, in_legend: bool) -> i32 {
-    if crate::canvas::provide_font().is_err() {
+    if crate::plot::canvas::provide_font().is_err() {
         return i32::MIN;
     }
     let mut svg = String::new();

@@ -51,7 +51,7 @@ fn sample(quantity: MapQuantity, cell: &Result<Cell, Error>) -> Option<PoseSampl
 #[cfg(test)]
 mod tests {
     use super::SHADES;
-    use crate::field::scale::room_px;
+    use crate::plot::field::scale::room_px;
     use clap::ValueEnum;
     use leg_model_tools::workspace_map::MapQuantity;
 
